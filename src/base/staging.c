@@ -15,8 +15,8 @@
 
 struct staging {
     char *folder, *hidden;
-    size_t kept; /* length of the part of folder's path that was there before */
-    DIR *files;  /* those of hidden, once they are to come into place */
+    size_t kept; /* length of the part of folder's path that existed before */
+    DIR *files;  /* the hidden folder, open for listing when its files are moved */
     const char *inputs[STAGING_MOST_INPUTS];
 };
 
@@ -175,14 +175,14 @@ static status over_files(const staging *t, bool only_check, staged_files *writte
     for (struct dirent *e; s == OK && (e = readdir(t->files));) {
         if (is_dots(e->d_name)) continue;
         staging_path(t, e->d_name, from);
-        /* shorter than the other one, which fits (begin) */
+        /* shorter than the other path, which fits (begin) */
         snprintf(to, sizeof to, "%s%s%s", t->folder, between, e->d_name);
         s = only_check ? check(t, from, to, written) : move(from, to);
     }
     return s;
 }
 
-/* All that could be refused for lack of memory is had before anything is moved. */
+/* Allocates everything before anything is moved, so that a lack of memory moves nothing. */
 static status check_files(staging *t, staged_files *written)
 {
     t->files = opendir(t->hidden);
@@ -190,7 +190,7 @@ static status check_files(staging *t, staged_files *written)
                     : fail_by_errno(MERLIN_CANNOT_WRITE, "cannot write into %s", t->folder);
 }
 
-/* Looks at all before moving any. */
+/* Checks all folders before it moves any file. */
 status staging_commit_all(staging *const *t, int count, staged_files *written)
 {
     status s = OK;
@@ -216,7 +216,7 @@ status staging_commit(staging *t, staged_files *written)
     return staging_commit_all(&t, 1, written);
 }
 
-/* A message about the hidden folder would name a path that nobody can look at any more. */
+/* Names the folder in the message instead of the hidden one, which no longer exists. */
 static status name_folder(const staging *t, status s)
 {
     char message[1024];

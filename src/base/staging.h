@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* A folder's files made aside and moved into place together: a full disk or an interrupt leaves nothing half done.
+/* Writes the files of a folder to a hidden folder first and moves them into place together: a full disk or an interrupt
+ * leaves nothing half done.
  *
  *     staging *t;
  *     const char *const inputs[STAGING_MOST_INPUTS] = {"cup.jpg"};
@@ -19,33 +20,33 @@
 
 typedef struct staging staging;
 
-/* Makes the folder if need be, and a hidden one inside it. inputs: STAGING_MOST_INPUTS files that are read for this and
- * that a commit does not replace, each of which may be NULL, as may the whole; the names must outlive t. */
+/* Makes the folder if it is missing, and a hidden one inside it. inputs: STAGING_MOST_INPUTS files that are read for
+ * this and that a commit must not replace; each may be NULL, as may the array; the names must outlive t. */
 enum { STAGING_MOST_INPUTS = 4 };
 status staging_begin(const char *folder, const char *const *inputs, staging **out);
-/* Where to write the file that will be folder/name: put into path, and returned. Any thread. */
+/* Composes the path at which to write the future folder/name, and returns it. May be called from any thread. */
 const char *staging_path(const staging *t, const char *name, char path[PATH_MAX]);
-/* The paths of what was written, sorted; zero-initialized is none. */
+/* Paths of the files written, sorted; zero-initialized it is empty. */
 typedef struct staged_files {
     char **at;
     size_t count;
-    uint64_t bytes; /* their sizes' sum */
+    uint64_t bytes; /* sum of their sizes */
 } staged_files;
 void staged_files_free(staged_files *files);
 
 /* Moves all files into the folder, replacing those of the same names, adds their paths to *written unless that is NULL,
- * and frees t. MERLIN_CANNOT_WRITE, with nothing moved, if a folder or one of the inputs is in the way of one. */
+ * and frees t. MERLIN_CANNOT_WRITE, with nothing moved, if a folder or one of the inputs is in the way. */
 status staging_commit(staging *t, staged_files *written);
-/* Those of several folders at once: nothing is moved if anything is in the way of any. */
+/* Commits several folders at once: nothing is moved if anything is in the way in any of them. */
 status staging_commit_all(staging *const *t, int count, staged_files *written);
-/* Files beside a folder of maps that are committed with it: the first is the maps'. */
+/* Largest number of files beside a folder of maps that are committed with it; the first is the maps'. */
 enum { MAPS_MOST_ELSEWHERE = 8 };
 typedef struct maps_staging {
     staging *at[1 + MAPS_MOST_ELSEWHERE];
     int count;
 } maps_staging;
 
-/* Removes what was written, and the folders that staging_begin made; frees t. Returns s, its message naming the folder
+/* Removes what was written, and the folders that staging_begin made; frees t. Returns s, with the folder in its message
  * instead of the hidden one. */
 status staging_abort(staging *t, status s);
 

@@ -28,11 +28,10 @@ status fail(status s, const char *format, ...) __attribute__((format(printf, 2, 
 /* Puts context in front of the recorded message ("context: message") and returns s. */
 status fail_in(status s, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* What errno says of a refusal by the C library: MERLIN_NO_MEMORY if memory ran out, else s. Of a library that stands
- * on it and does not say why it refused that can be told, too, if errno was 0 before. */
+/* Returns MERLIN_NO_MEMORY if errno says that memory ran out, else s, after a refusal by the C library or by a library
+ * that uses it and does not report its reason; errno must have been 0 before. */
 status status_by_errno(status s);
-/* Records the message with what errno says behind it ("message: No such file or directory"), and returns
- * status_by_errno(s). */
+/* Records the message followed by errno's ("message: No such file or directory"), and returns status_by_errno(s). */
 status fail_by_errno(status s, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 #ifdef __clang_analyzer__

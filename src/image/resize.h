@@ -16,9 +16,9 @@ status img_crop(const img *from, int x, int y, int width, int height, img *out);
 /* Replaces each pixel by the sum over a window of (2 radius + 1)² pixels, in time independent of the radius; outside
  * the image is zero. */
 status img_box_sums(img *image, int radius);
-/* Guided filter upsampling (He et al. 2013; fast form, He & Sun 2015): enlarges low-resolution maps to the guide's size
- * so that their edges follow it. guide: 1 or 3 channels. low_mask (1 channel, low's size, or NULL) and mask (1 channel,
- * guide's size, or NULL) keep what is outside from leaking in; outside mask the result is zero. radius in
+/* Enlarges low-resolution maps to the guide's size so that their edges follow it, by guided filter upsampling (He et
+ * al. 2013; fast form, He & Sun 2015). guide: 1 or 3 channels. low_mask (1 channel, low's size, or NULL) and mask (1
+ * channel, guide's size, or NULL) keep what is outside from leaking in; outside mask the result is zero. radius in
  * low-resolution pixels; epsilon in squared guide units. */
 status img_guided_upsample(const img *low, const img *low_mask, const img *guide, const img *mask, int radius,
                            float epsilon, img *out);

@@ -52,7 +52,7 @@ typedef struct network {
     nn_node *direct, *indirect, *relit_direct, *relit_brdf;
 } network;
 
-/* fminf and fmaxf would be library calls, because of what they promise about NaN */
+/* Encodes without fminf and fmaxf, which would be library calls because of what they promise about NaN. */
 void model_encode_image(const float *linear, float *encoded, size_t n)
 {
     for (size_t i = 0; i < n; i++) {

@@ -145,7 +145,7 @@ nn_param *nn_params_at(nn_params *params, size_t i);
 size_t nn_params_values(const nn_params *params);
 nn_param *nn_params_find(nn_params *params, const char *name);
 void nn_params_scale_rate(nn_params *params, const char *prefix, float scale);
-/* Must be called after values were changed from outside: programs update their copies at their next run. */
+/* Announces that values were changed from outside: programs update their copies at their next run. */
 void nn_params_touch(nn_params *params);
 
 /* Copies the tensors of a safetensors file (nn/safetensors.h; F32, F16 or BF16) into parameters of the same names.

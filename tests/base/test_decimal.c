@@ -36,14 +36,14 @@ static void well_known_numbers_look_like_printf_s(void **state)
             char expected[64];
             snprintf(expected, sizeof expected, "%.*g", digits, values[i]);
             if (strcmp(text_of(values[i], digits), expected) == 0) continue;
-            /* halfway between two: either is right */
+            /* halfway between two values either is right */
             double off = fabs(strtod(text_of(values[i], digits), NULL) - values[i]);
             if (fabs(off - fabs(strtod(expected, NULL) - values[i])) > 1e-9 * fabs(values[i]))
                 fail_msg("%s is not %s", text_of(values[i], digits), expected);
         }
 }
 
-/* As near as the digits allow, and as short as printf's. */
+/* Digits are as near as their number allows, and the text is as short as printf's. */
 static void any_number_is_rounded_to_its_digits(void **state)
 {
     (void)state;

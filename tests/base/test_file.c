@@ -29,7 +29,7 @@ static int make_folder(void **state)
     return mkdtemp(folder) ? 0 : -1;
 }
 
-/* Everything a test left is left behind by mistake: rmdir then fails. */
+/* Removes the test's folder; rmdir fails if a test left anything in it. */
 static int remove_folder(void **state)
 {
     (void)state;
@@ -60,7 +60,7 @@ static void what_was_written_is_read(void **state)
     assert_int_equal(file_write(path, "one\0two", 7), OK);
     assert_int_equal(file_read(path, 100, &data, &size), OK);
     assert_int_equal(size, 7);
-    assert_memory_equal(data, "one\0two", 8); /* and a zero behind */
+    assert_memory_equal(data, "one\0two", 8); /* with a zero after it */
     free(data);
     assert_int_equal(file_write(path, "", 0), OK);
     assert_int_equal(file_read(path, 100, &data, &size), OK);
@@ -95,7 +95,7 @@ static void larger_files_than_wanted_are_refused(void **state)
     free(path);
 }
 
-/* A disk that fills up, by a limit on the size of files. */
+/* The disk is filled by a limit on the size of files. */
 static void a_write_that_fails_leaves_the_old_file_and_no_other(void **state)
 {
     (void)state;
@@ -190,7 +190,7 @@ static void printed_numbers_have_points_in_every_locale(void **state)
     assert_int_equal(s, OK);
     assert_int_equal(file_read(path, 10, &data, &size), OK);
     assert_string_equal(data, "0.5");
-    assert_string_equal(outside, comma ? "0,5" : "0.5"); /* the program's own stays */
+    assert_string_equal(outside, comma ? "0,5" : "0.5"); /* the program's own locale stays */
     unlink(path);
     free(data);
     free(path);
@@ -223,7 +223,7 @@ static void what_is_no_plain_file_is_not_replaced(void **state)
     free(pipe);
 }
 
-/* A pipe that somebody reads can be opened for writing; one that nobody does cannot without waiting. */
+/* A pipe with a reader can be opened for writing; one without would block. */
 static void what_is_no_plain_file_is_not_opened(void **state)
 {
     (void)state;
@@ -250,7 +250,7 @@ static void what_is_no_plain_file_is_not_opened(void **state)
     free(pipe);
 }
 
-/* Of as many bytes as a name may have, in letters of three bytes. */
+/* Names have as many bytes as are allowed, in characters of three bytes. */
 static void the_longest_names_can_be_written(void **state)
 {
     (void)state;
@@ -307,7 +307,7 @@ static void committing_replaces_the_file(void **state)
     assert_string_equal(data, "new");
     free(data);
     assert_int_equal(file_temporary(path, &temporary), OK);
-    assert_int_equal(file_commit(temporary, path), MERLIN_CANNOT_WRITE); /* nobody wrote it */
+    assert_int_equal(file_commit(temporary, path), MERLIN_CANNOT_WRITE); /* the temporary file was not written */
     unlink(path);
     free(path);
 }
@@ -331,7 +331,7 @@ static void folders_are_made_with_those_above(void **state)
     assert_int_equal(file_make_folder(below), MERLIN_CANNOT_WRITE);
     assert_non_null(strstr(status_message(), "a file of that name is in the way"));
     assert_int_equal(file_make_folder("/proc/self/x/y"), MERLIN_CANNOT_WRITE);
-    assert_non_null(strstr(status_message(), "No such file or directory")); /* what mkdir says there */
+    assert_non_null(strstr(status_message(), "No such file or directory")); /* mkdir's message */
     unlink(file);
     for (int i = 0; i < 3; i++, *strrchr(deep, '/') = 0)
         rmdir(deep);

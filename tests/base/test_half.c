@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* 16-bit floats against their definitions, over every value they have. */
+/* Compares 16-bit floats with their definitions, over all values. */
 #include "base/half.h"
 
 #include <math.h>
@@ -14,7 +14,7 @@
 
 #include <cmocka.h>
 
-/* The value of sign, exponent and fraction as IEEE 754 writes it. */
+/* Returns the value of sign, exponent and fraction by IEEE 754. */
 static double half_by_definition(unsigned h)
 {
     double sign = h >> 15 ? -1 : 1;
@@ -33,7 +33,7 @@ static void every_half_has_the_value_of_its_definition(void **state)
     }
 }
 
-/* As in a run of the network. */
+/* The mode is that of a run of the network. */
 static void halves_have_their_values_where_denormals_are_zero(void **state)
 {
     (void)state;
@@ -72,13 +72,13 @@ static void every_bfloat16_survives_the_round_trip(void **state)
     }
 }
 
-/* Between neighbours a and b: the nearer one, and the even one from the middle. */
+/* Between neighbours a and b the nearer one is chosen, and in the middle the even one. */
 static void halves_round_to_nearest_and_ties_to_even(void **state)
 {
     (void)state;
     for (unsigned h = 0; h < 0x7bff; h++) {
         double a = (double)half_to_float((uint16_t)h), b = (double)half_to_float((uint16_t)(h + 1));
-        float middle = (float)((a + b) / 2); /* exact: one more bit */
+        float middle = (float)((a + b) / 2); /* exact, as it needs one more bit */
         unsigned even = h & 1 ? h + 1 : h;
         assert_int_equal(float_to_half(middle), even);
         assert_int_equal(float_to_half(nextafterf(middle, 0)), h);
@@ -114,7 +114,7 @@ static void what_is_too_large_becomes_infinite_and_too_small_zero(void **state)
     assert_int_equal(float_to_bf16(3.4e38f), 0x7f80);
     assert_int_equal(float_to_bf16(-INFINITY), 0xff80);
     assert_true(isnan(bf16_to_float(float_to_bf16(NAN))) && isnan(half_to_float(float_to_half(-NAN))));
-    /* a NaN whose bits lie in the lower half alone must not become infinite */
+    /* a NaN with bits only in the lower half must not become infinity */
     assert_true(isnan(bf16_to_float(float_to_bf16(bits_float(0x7f800001)))));
     assert_true(isnan(half_to_float(float_to_half(bits_float(0x7f800001)))));
 }

@@ -7,7 +7,7 @@
 #include "base/file.h"
 #include "base/text/json_file.h"
 
-/* cmocka names a macro fail, so that it comes behind base/status.h */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -36,7 +36,7 @@ static int whole(json_object *o, const char *key)
     return value;
 }
 
-/* The object inside, to be freed. */
+/* Returns the object inside, which the caller frees. */
 static json_object *inner(json_object *o, const char *key)
 {
     char *text;
@@ -74,7 +74,7 @@ static void objects_are_merged_and_arrays_replaced(void **unused)
     assert_int_equal(whole(in, "b"), 4);
     assert_int_equal(whole(deep, "x"), 1);
     assert_int_equal(whole(deep, "y"), 5);
-    assert_int_equal(json_finish(o), OK); /* "base" is gone */
+    assert_int_equal(json_finish(o), OK); /* "base" is not among the keys */
     json_free(deep);
     json_free(in);
     json_free(o);
@@ -97,13 +97,13 @@ static void paths_go_from_the_file_they_stand_in(void **unused)
     json_free(o);
     char text[600];
     snprintf(text, sizeof text, "{\"base\": \"%s\"}", scratch_path("runs/1.json"));
-    put("models/3.json", text); /* one from the root is taken as it is */
+    put("models/3.json", text); /* an absolute path is used unchanged */
     o = reads("models/3.json");
     assert_int_equal(whole(o, "seed"), 1);
     json_free(o);
 }
 
-/* Else a smaller network would keep the blocks of the larger one that its base has. */
+/* Otherwise a smaller network would keep the blocks of its base's larger one. */
 static void a_named_model_has_nothing_of_the_bases_and_a_changed_one_has(void **unused)
 {
     (void)unused;

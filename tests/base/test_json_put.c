@@ -10,7 +10,7 @@
 #include "base/status.h"
 #include "each_allocation.h"
 
-/* after the project's headers: its macro fail() would break the declaration of ours */
+/* last, as cmocka defines a macro named fail */
 #include <cmocka.h>
 
 static cJSON *build(void)

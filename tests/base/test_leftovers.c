@@ -16,7 +16,7 @@
 #include "base/file.h"
 #include "base/leftovers.h"
 
-#include <cmocka.h> /* behind ours: it has a macro named fail */
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
 static char *folder;
 
@@ -41,7 +41,7 @@ static bool is_there(const char *name)
     return file_is_in(folder, name);
 }
 
-/* A process that writes a file and a folder of one, and dies without a word; its names are in the folder then. */
+/* Starts a process that writes a file and a folder with a file, and is killed; its names are left in the folder. */
 static void let_one_die(void)
 {
     pid_t child = fork();
@@ -100,7 +100,7 @@ static void what_the_living_write_and_others_have_stays(void **state)
     free(hidden);
 }
 
-/* Another machine's process may be at work. */
+/* Another machine's process may still be running. */
 static void those_of_another_machine_go_after_a_day(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The forms in which people, spreadsheets and programs write lists of lights: all say the same four directions. */
+/* Forms in which people, spreadsheets and programs write lists of lights; all list the same four directions. */
 #include "base/lights/light_list.h"
 
 #include <setjmp.h>
@@ -27,7 +27,7 @@ static void assert_same(const light_list *lights, const char *text)
     }
 }
 
-/* The same four, without names, strengths and notes. */
+/* Asserts that the bytes are read as the same four directions, without names, intensities and notes. */
 static void assert_reads_bytes(const char *text, size_t size)
 {
     light_list lights;
@@ -109,7 +109,7 @@ static void lines_end_as_on_any_system(void **state)
                  "0 0.6\n0 0 1");
 }
 
-/* Both byte orders, with a mark and without. */
+/* Both byte orders are read, with a byte order mark and without. */
 static void windows_writes_two_bytes_a_letter(void **state)
 {
     (void)state;
@@ -127,7 +127,7 @@ static void windows_writes_two_bytes_a_letter(void **state)
         assert_reads_bytes(mark ? bytes : bytes + 2, 2 * UNITS + (mark ? 2 : 0));
     }
     light_list lights;
-    static const char named[] = "\xff\xfe\xe4\0.\0p\0n\0g\0 \0" /* ä.png, and a letter of four bytes */
+    static const char named[] = "\xff\xfe\xe4\0.\0p\0n\0g\0 \0" /* ä.png, and a character of four bytes */
                                 "0\0 \0"
                                 "0\0 \0"
                                 "1\0\n\0=\xd8\x00\xde.\0p\0n\0g\0 \0"
@@ -269,7 +269,8 @@ static void lights_may_stand_in_columns(void **state)
     assert_int_equal(lights.count, 7);
     assert_float_equal(lights.at[6].y, 80, 0);
     light_list_free(&lights);
-    /* three of three are a line each, as is said everywhere; that it looks otherwise is noted */
+    /* three lines of three numbers are one light a line, as documented; a note says that they could be read otherwise
+     */
     static const char three[] = "0.6 0 -0.8\n0 -0.6 0\n0.8 0.8 0.6\n";
     assert_int_equal(light_list_parse(three, sizeof three - 1, "l.txt", &lights), OK);
     assert_float_equal(lights.at[0].z, -0.8, 1e-6);

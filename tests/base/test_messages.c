@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Lines for people are seen, those of libraries in a decoder are not. */
+/* The program's own messages are shown, those of libraries inside a decoder are not. */
 #include "base/messages.h"
 
 #include <setjmp.h>
@@ -26,7 +26,7 @@ static void speak(void)
     fprintf(messages(), "two\n");
 }
 
-/* What a process says that keeps its messages, or does not. */
+/* Captures what a process prints that keeps its messages, or does not. */
 static void hear(int keep, char *heard, size_t room)
 {
     int ends[2];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* How long work will still take, by how quickly it went. */
+/* Estimates of the time left, from the speed so far. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -22,7 +22,7 @@ static void nothing_is_promised_before_anything_is_heard_of(void **state)
     pace p;
     pace_begin(&p, 0.3, 100);
     assert_true(pace_left(&p, 105) < 0);
-    pace_note(&p, 0.3, 106); /* no news */
+    pace_note(&p, 0.3, 106); /* not above the last share */
     assert_true(pace_left(&p, 106) < 0);
 }
 
@@ -55,9 +55,9 @@ static void time_passes_while_nothing_is_heard_of(void **state)
     assert_near(pace_left(&p, 14), 6, 1e-9);
     assert_near(pace_left(&p, 25), 0, 0);
     pace_note(&p, 0.5, 26);
-    pace_note(&p, 0.4, 27); /* nor does it go back */
+    pace_note(&p, 0.4, 27); /* a smaller share is ignored, too */
     assert_near(pace_left(&p, 27), 0, 0);
-    pace_note(&p, 0.75, 30); /* the time since the last news counts: 20 s for a quarter after 10 s for a half */
+    pace_note(&p, 0.75, 30); /* the time since the last note counts: 20 s for a quarter after 10 s for a half */
     assert_true(pace_left(&p, 30) > 10 && pace_left(&p, 30) < 20);
 }
 
@@ -71,7 +71,7 @@ static void the_latest_pace_weighs_most(void **state)
         pace_note(&p, i / 100.0, now += 1);
     for (int i = 51; i <= 90; i++)
         pace_note(&p, i / 100.0, now += 4);
-    /* 10 hundredths at 4 s are left; the mean of all that was done would promise 23 s */
+    /* 10 hundredths at 4 s are left; the mean of all the work would give 23 s */
     double left = pace_left(&p, now);
     print_message("%.2f s left\n", left);
     assert_true(left > 28 && left < 40);

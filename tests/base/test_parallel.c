@@ -38,7 +38,7 @@ static void all_is_done_where_nothing_fails(void **state)
     assert_int_equal(parallel_try(0, body, &w), OK);
 }
 
-/* Whichever of them fails first by the clock, and in whichever thread. */
+/* The first by index is meant, whichever fails first in time and in whichever thread. */
 static void the_first_failure_is_heard(void **state)
 {
     (void)state;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Sums of several processes: of one order, whatever their number and size, the same in all. */
+/* Sums over several processes have one order and are the same in all, whatever the number and size of the processes'
+ * parts. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -10,13 +11,13 @@
 
 enum { RANKS = 3, MOST = 1000003 };
 
-/* Before cmocka's macro. */
+/* Defined before cmocka's macro fail. */
 static status failure_of(int rank)
 {
     return fail(MERLIN_BAD_INPUT, "rank %d", rank);
 }
 
-#include <cmocka.h> /* behind ours: it has a macro named fail */
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
 #include "forked_ranks.h"
 
@@ -34,7 +35,7 @@ static void sum_doubles(ranks *r, void *context)
     if (ranks_sum(r, mine, 5) != OK) ranks_abort(r);
 }
 
-/* From the first to the last: (1e16 + 1) - 1e16 is 0 in doubles, where another order gives 1. */
+/* The order is from the first to the last: (1e16 + 1) - 1e16 is 0 in doubles, where another order gives 1. */
 static void doubles_are_added_in_the_order_of_ranks(void **state)
 {
     (void)state;
@@ -51,7 +52,7 @@ static void doubles_are_added_in_the_order_of_ranks(void **state)
 
 typedef struct floats {
     size_t count;
-    float *all; /* of each rank, MOST apart */
+    float *all; /* values of each rank, MOST apart */
 } floats;
 
 static void sum_floats(ranks *r, void *context)

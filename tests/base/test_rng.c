@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-/* Of the reference implementation of SplitMix64 started at 0. */
+/* Values are from the reference implementation of SplitMix64 started at 0. */
 static void the_mixer_is_splitmix64(void **state)
 {
     (void)state;
@@ -16,7 +16,7 @@ static void the_mixer_is_splitmix64(void **state)
     assert_true(rng_mix(0x9e3779b97f4a7c15u) == 0x6e789e6aa1b965f4u);
 }
 
-/* The published demonstration of PCG32: initstate 42, initseq 54. */
+/* Values are from the published demonstration of PCG32: initstate 42, initseq 54. */
 static void the_generator_is_pcg32(void **state)
 {
     (void)state;
@@ -37,7 +37,7 @@ static void equal_keys_give_equal_numbers(void **state)
         assert_int_equal(rng_u32(&a), rng_u32(&b));
 }
 
-/* Of 1000 pairs of 32-bit numbers none should agree: the chance of one is 2e-7. */
+/* Of 1000 pairs of 32-bit numbers none should agree: the probability of one is 2e-7. */
 static void neighbouring_keys_give_unrelated_numbers(void **state)
 {
     (void)state;
@@ -50,7 +50,8 @@ static void neighbouring_keys_give_unrelated_numbers(void **state)
     }
 }
 
-/* 64 cells, 64,000 draws: χ² has 63 degrees of freedom; 120 is passed by chance once in 10^5 (and the key is fixed). */
+/* 64 cells, 64,000 numbers: χ² has 63 degrees of freedom and exceeds 120 with probability 10^-5 (and the key is fixed).
+ */
 static void uniform_numbers_fill_their_range_evenly(void **state)
 {
     (void)state;
@@ -68,7 +69,7 @@ static void uniform_numbers_fill_their_range_evenly(void **state)
     assert_true(chi2 < 120 && chi2 > 25);
 }
 
-/* First numbers of consecutive indices: what samples and augmentations draw. */
+/* These are the numbers that samples and augmentations use first. */
 static void first_draws_of_consecutive_indices_are_uniform(void **state)
 {
     (void)state;

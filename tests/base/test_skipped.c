@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Lists of files that were left aside. */
+/* Lists of skipped files. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -17,7 +17,7 @@ static void a_context_stands_before_the_message(void **state)
     assert_string_equal(status_message(), "cannot read a.exr: it is 3 bytes");
 }
 
-/* Of a file's name, say, which may hold anything and be longer than a message. */
+/* The context may be a file's name, which may contain anything and be longer than a message. */
 static void messages_are_one_line_however_long_their_context(void **state)
 {
     (void)state;

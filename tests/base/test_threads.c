@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Tests how many threads loops have, and that waiting ones sleep soon. */
+/* The number of threads in loops, and how soon waiting threads sleep. */
 #include "base/threads.h"
 
 #include <pthread.h>
@@ -31,7 +31,7 @@ static void nap(long milliseconds)
     nanosleep(&(struct timespec){milliseconds / 1000, milliseconds % 1000 * 1000000}, NULL);
 }
 
-/* One thread has nothing to do, and waits for the other, which takes no processor's time either. */
+/* Keeps one thread without work, waiting for the other, which sleeps. */
 static void first_naps(void *context, size_t begin, size_t end)
 {
     (void)context;
@@ -64,7 +64,7 @@ static size_t address_space(void)
     return pages * (size_t)sysconf(_SC_PAGESIZE);
 }
 
-/* A thread's stack takes 8 MB of it, or what ulimit -s says: a few threads fit, 500 do not. */
+/* A thread's stack takes 8 MB, or what ulimit -s says: a few threads fit the limit, 500 do not. */
 static void no_more_threads_are_used_than_can_be_had(void **state)
 {
     (void)state;
@@ -87,14 +87,14 @@ static void the_most_threads_are_1024(void **state)
     assert_in_range(parallel_threads(), 1, THREADS_MOST);
 }
 
-/* Left to itself libgomp spins for milliseconds a wait. */
+/* By default libgomp spins for milliseconds at each wait. */
 static void who_waits_sleeps_within_half_a_millisecond(void **state)
 {
     (void)state;
     enum { WAITS = 20 };
     threads_use_here(2);
     parallel_blocks(2, first_naps, NULL);
-    nap(100); /* until all that was started sleeps */
+    nap(100); /* until all threads that were started sleep */
     double began = processor_seconds();
     for (int i = 0; i < WAITS; i++)
         parallel_blocks(2, first_naps, NULL);
@@ -120,7 +120,7 @@ static void every_thread_has_as_many_as_was_said(void **state)
     threads_begin();
     assert_int_equal(parallel_threads(), 3);
     assert_int_equal(others, 3);
-    threads_use_here(2); /* the last word counts */
+    threads_use_here(2); /* the last call counts */
     threads_begin();
     assert_int_equal(parallel_threads(), 2);
 }
@@ -128,7 +128,7 @@ static void every_thread_has_as_many_as_was_said(void **state)
 int main(int argc, char **argv)
 {
     (void)argc;
-    /* libgomp has read by now how it is to wait: not from here */
+    /* libgomp read the environment at the start, so that it cannot be set here */
     if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT")) {
         unsetenv("OMP_WAIT_POLICY");
         unsetenv("GOMP_SPINCOUNT");
@@ -136,7 +136,7 @@ int main(int argc, char **argv)
         return 1;
     }
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(no_more_threads_are_used_than_can_be_had), /* before there are stacks to be used again */
+        cmocka_unit_test(no_more_threads_are_used_than_can_be_had), /* first, before there are stacks to be reused */
         cmocka_unit_test(who_waits_sleeps_within_half_a_millisecond),
         cmocka_unit_test(every_thread_has_as_many_as_was_said),
         cmocka_unit_test(the_most_threads_are_1024),

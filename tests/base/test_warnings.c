@@ -38,7 +38,7 @@ static void no_warning_is_an_empty_array(void **state)
     cJSON_Delete(all);
 }
 
-/* Returns what warnings_print writes; at most size - 1 bytes of it. */
+/* Captures what warnings_print writes, at most size - 1 bytes of it. */
 static void printed(const warnings *list, size_t most, char *out, size_t size)
 {
     FILE *aside = tmpfile();

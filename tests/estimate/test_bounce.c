@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include <cmocka.h> /* behind ours: it has a macro named fail */
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
 enum { SIDE = 128, VALUES = 3 * SIDE * SIDE, RADIUS = SIDE / 32 };
 

@@ -12,7 +12,7 @@
 #include "scratch.h"
 #include "surroundings.h"
 
-/* cmocka names a macro fail, so that it comes behind base/status.h */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

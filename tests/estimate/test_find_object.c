@@ -12,7 +12,7 @@
 #include "base/threads.h"
 #include "estimate/object/mask.h"
 
-#include <cmocka.h> /* behind ours: it has a macro named fail */
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
 enum { SIDE = 200 };
 

@@ -9,7 +9,7 @@
 #include "optics/camera.h"
 #include "optics/sh.h"
 
-/* last: it claims the word fail */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -9,7 +9,7 @@
 #include "base/rng.h"
 #include "estimate/object/grid_cut.h"
 
-#include <cmocka.h> /* behind ours: it has a macro named fail */
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
 static int64_t cost_of(const grid_cut *g, const uint8_t *object)
 {

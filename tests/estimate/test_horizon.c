@@ -8,7 +8,7 @@
 #include "optics/octahedron.h"
 #include "surroundings.h"
 
-/* cmocka names a macro fail, so that it comes behind base/status.h */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -11,7 +11,7 @@
 #include "scratch.h"
 #include "weights.h"
 
-/* last: it claims the word fail */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

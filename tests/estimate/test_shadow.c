@@ -11,7 +11,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include <cmocka.h> /* behind ours: it has a macro named fail */
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
 enum { SIDE = 128, PIXELS = SIDE * SIDE };
 static const camera view = {.width = SIDE, .height = SIDE, .fov = 60};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Fixtures of tests that read pictures: saved by libvips, or byte by byte. */
+/* Pictures for the tests of reading: saved by libvips, or written byte by byte. */
 #ifndef MERLIN_TESTS_IMAGE_READ_FIXTURE_H
 #define MERLIN_TESTS_IMAGE_READ_FIXTURE_H
 
@@ -16,7 +16,7 @@
 
 #include "writes.h"
 
-/* A libvips image of 8- or 16-bit codes, for fixtures. */
+/* Returns a libvips image of 8- or 16-bit codes. */
 static inline VipsImage *fixture(const void *codes, int width, int height, int bands, VipsInterpretation interpretation)
 {
     bool wide = interpretation == VIPS_INTERPRETATION_RGB16 || interpretation == VIPS_INTERPRETATION_GREY16;
@@ -30,7 +30,7 @@ static inline VipsImage *fixture(const void *codes, int width, int height, int b
     return out;
 }
 
-/* Saves by the name's ending and drops the image. */
+/* Saves in the format of the name's extension and frees the image. */
 static inline const char *save(VipsImage *image, const char *name)
 {
     const char *path = scratch_path(name);
@@ -40,7 +40,7 @@ static inline const char *save(VipsImage *image, const char *name)
     return path;
 }
 
-/* Left half red, right half blue, upper half bright: 16 × 8. */
+/* Returns 16 × 8 pixels: left half red, right half blue, upper half bright. */
 static inline VipsImage *quarters(void)
 {
     uint8_t codes[8][16][3] = {0};
@@ -52,7 +52,7 @@ static inline VipsImage *quarters(void)
 
 enum { PHOTOMETRIC_RGB = 2, PHOTOMETRIC_YCBCR = 6 };
 
-/* A TIFF of one line of two pixels, three colours and alpha in 32-bit floats; extra: what its alpha is. */
+/* Writes a TIFF of one line of two pixels, three colours and alpha in 32-bit floats; extra: the kind of alpha. */
 static inline void write_tiff(const char *path, const float pixels[8], uint16_t extra, uint16_t photometric)
 {
     static const uint16_t LONG = 4, SHORT = 3;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What pictures say of their colours outside of PNG's chunks: TIFF's tags, EXIF, the numbers of HEIC and AVIF. */
+/* What pictures state about their colours outside PNG's chunks: TIFF's tags, EXIF, the code points of HEIC and AVIF. */
 #include <math.h>
 #include <vips/vips.h>
 
@@ -38,11 +38,11 @@ static void put_entry(file_bytes *b, unsigned tag, unsigned type, unsigned count
 
 typedef struct tiff_words {
     unsigned meaning, samples, bits, format;
-    const uint16_t *transfer;  /* of 256 codes */
-    const uint32_t *primaries; /* six, over 1000 */
+    const uint16_t *transfer;  /* 256 entries */
+    const uint32_t *primaries; /* six, times 1000 */
 } tiff_words;
 
-/* A TIFF of one pixel of codes 128, 50, 20, and what is said of it. */
+/* Writes a TIFF of one pixel of codes 128, 50, 20 with these tags. */
 static const char *write_tiff(const tiff_words *w)
 {
     enum { PIXEL = 8, TRANSFER = 40, PRIMARIES = TRANSFER + 512, PAGE = PRIMARIES + 48 };
@@ -115,7 +115,8 @@ static void the_curve_in_a_tiff_is_heeded(void **state)
     assert_refused(write_tiff(&(tiff_words){1, 1, 8, 0, curve, NULL}), "TransferFunction");
 }
 
-/* Adobe RGB's, whose red is sRGB's (by matrices of the standard: 1.3983 - 0.3983; 1; -0.0429 + 1.0429). */
+/* The primaries are Adobe RGB's, whose red is sRGB's (by matrices of the standard: 1.3983 - 0.3983; 1; -0.0429 +
+ * 1.0429). */
 static void the_primaries_in_a_tiff_are_heeded(void **state)
 {
     (void)state;
@@ -136,7 +137,7 @@ static void samples_of_a_tiff_that_are_not_read_are_named(void **state)
     assert_refused(write_tiff(&(tiff_words){1, 1, 32, 1, NULL, NULL}), "whole numbers of 32 bits");
 }
 
-/* EXIF that states a colour space and a rule of DCF, behind the first two bytes of a JPEG. */
+/* Writes EXIF with a colour space and a rule of DCF, after the first two bytes of a JPEG. */
 static const char *write_jpeg(unsigned space, const char *rule)
 {
     enum { EXIF_PAGE = 26, RULES_PAGE = EXIF_PAGE + 30 };
@@ -186,7 +187,7 @@ static void a_jpeg_that_says_adobe_rgb_in_exif_is_brought_to_srgb(void **state)
     assert_pixel(write_jpeg(0xffff, "R98"), 0.5776, 0.1274, 0.0319, 0.02);
 }
 
-/* Reads the picture again after its numbers were changed, as a file of other colours has them. */
+/* Changes the code points in a picture's file. */
 static void state_numbers(const char *path, unsigned primaries, unsigned transfer)
 {
     char *data;

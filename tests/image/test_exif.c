@@ -16,7 +16,7 @@
 
 #include <cmocka.h>
 
-/* ---- bytes of a file ---- */
+/* ---- building a file ---- */
 
 typedef struct bytes {
     unsigned char at[4096];
@@ -44,10 +44,10 @@ static void put_bytes(bytes *b, const bytes *more)
 enum { SHORT = 3, LONG = 4, RATIONAL = 5 };
 
 typedef struct entry {
-    unsigned tag, type, value, under; /* under: of a fraction */
+    unsigned tag, type, value, under; /* under: denominator of a fraction */
 } entry;
 
-/* A page whose fractions stand behind it; returns where the value of the entry `marked` lies. */
+/* Appends a page followed by its fractions; returns the position of the value of the entry `marked`. */
 static size_t put_page(bytes *b, const entry *entries, int count, unsigned marked)
 {
     size_t found = 0, behind = b->count + 2 + 12 * (size_t)count + 4;
@@ -70,7 +70,7 @@ static size_t put_page(bytes *b, const entry *entries, int count, unsigned marke
     return found;
 }
 
-/* A TIFF's head with an orientation and an EXIF page of these entries. */
+/* Returns a TIFF header with an orientation and an EXIF page of these entries. */
 static bytes exif_of(bool little, const entry *entries, int count)
 {
     enum { EXIF = 34665 };
@@ -95,7 +95,7 @@ static exif_facts facts_of(const bytes *b)
     return facts;
 }
 
-/* ---- what a block says ---- */
+/* ---- the facts in a block ---- */
 
 static void flash_focal_length_and_orientation_are_read(void **state)
 {
@@ -112,7 +112,7 @@ static void flash_focal_length_and_orientation_are_read(void **state)
 static void a_flash_that_did_not_fire_is_none(void **state)
 {
     (void)state;
-    static const unsigned none[] = {0, 16, 24, 32}; /* off, by choice, by the camera, none there */
+    static const unsigned none[] = {0, 16, 24, 32}; /* off, by choice, by the camera, no flash there */
     for (int i = 0; i < 4; i++) {
         bytes b = exif_of(true, (const entry[]){{37385, SHORT, none[i], 0}}, 1);
         assert_int_equal(facts_of(&b).flash, EXIF_FLASH_NONE);
@@ -120,7 +120,7 @@ static void a_flash_that_did_not_fire_is_none(void **state)
     }
 }
 
-/* 50 mm on 23.5 × 15.6 mm of 6000 × 4000 pixels: as wide as 76.7 mm. */
+/* 50 mm on 23.5 × 15.6 mm of 6000 × 4000 pixels has the field of view of 76.7 mm. */
 static void the_sensors_size_serves_where_35_mm_are_not_said(void **state)
 {
     (void)state;
@@ -148,7 +148,7 @@ static void what_is_absurd_or_damaged_is_unknown(void **state)
     }
 }
 
-/* ---- where files keep it ---- */
+/* ---- where files keep EXIF ---- */
 
 static bytes in_jpeg(const bytes *exif)
 {
@@ -172,7 +172,7 @@ static bytes in_png(const bytes *exif)
     return b;
 }
 
-/* ImageMagick's: digits in lines. */
+/* Returns ImageMagick's form: hexadecimal digits in lines. */
 static bytes as_digits(const bytes *exif)
 {
     bytes text = {0};
@@ -237,7 +237,7 @@ static void put_box(bytes *to, const char name[4], const bytes *inside)
     put_bytes(to, inside);
 }
 
-/* Two items, of which the second is EXIF, behind the boxes. */
+/* Returns a HEIC with two items, the second of which is EXIF, after the boxes. */
 static bytes in_heic(const bytes *exif)
 {
     bytes b = {0}, item = {0}, table = {0}, places = {0}, meta = {0};
@@ -341,7 +341,7 @@ static void what_has_none_says_nothing(void **state)
     (void)state;
     exif_facts facts;
     bytes exif = exif_of(true, phone, 3), b = in_jpeg(&exif);
-    memcpy(b.at + 12 + 2, "http", 4); /* XMP stands in such a marker, too */
+    memcpy(b.at + 12 + 2, "http", 4); /* XMP uses the same marker */
     facts = facts_in_file(&b);
     assert_int_equal(facts.flash, EXIF_FLASH_UNKNOWN);
     assert_int_equal(facts.orientation, 1);
@@ -349,7 +349,7 @@ static void what_has_none_says_nothing(void **state)
     assert_int_equal(facts.flash, EXIF_FLASH_UNKNOWN);
 }
 
-/* Under the sanitizers this is what it is for; otherwise, that all of it ends. */
+/* Under the sanitizers this finds memory errors; otherwise it shows that reading terminates. */
 static void damaged_files_do_no_harm(void **state)
 {
     (void)state;

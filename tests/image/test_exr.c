@@ -86,7 +86,7 @@ static void values_beyond_half_are_clamped(void **state)
     assert_true(back[0] == 65504 && back[1] == -65504 && back[2] == 65504 && back[3] == 0x1p-24f);
 }
 
-/* Beside halves, of an odd width: a float then lies where no float may lie in memory. */
+/* The width is odd, so that floats after halves are not aligned in memory. */
 static void full_channels_are_read_back_exactly(void **state)
 {
     (void)state;
@@ -122,7 +122,7 @@ static void missing_channel_is_named(void **state)
     exr_close(f);
 }
 
-/* Reads as far as it goes and says whether all of it went. */
+/* Reads the depth as far as possible and returns whether all of it was read. */
 static status read_depth(const char *path)
 {
     static float depth[COUNT];
@@ -158,7 +158,7 @@ static void every_truncation_is_refused(void **state)
     free(data);
 }
 
-/* A head that claims 256 million pixels, and sixteen behind it. */
+/* The header claims 256 million pixels, and sixteen follow. */
 static void a_small_file_is_not_given_memory_for_very_many_pixels(void **state)
 {
     (void)state;
@@ -195,7 +195,7 @@ static void missing_and_foreign_files_are_refused(void **state)
     assert_int_equal(exr_open(scratch_path("text.exr"), &f), MERLIN_BAD_INPUT);
     assert_null(f);
     assert_int_equal(mkfifo(scratch_path("pipe.exr"), 0600), 0);
-    alarm(20); /* whoever opens a pipe that nobody writes to waits for ever */
+    alarm(20); /* opening a pipe without a writer would block forever */
     assert_int_equal(exr_open(scratch_path("pipe.exr"), &f), MERLIN_BAD_INPUT);
     alarm(0);
     assert_non_null(strstr(status_message(), "not a plain file"));
@@ -227,7 +227,7 @@ static void failed_write_leaves_nothing(void **state)
     assert_false(folder_has_leftovers());
 }
 
-/* A tiled file of float and uint channels, written with the library itself. */
+/* Writes a tiled file of float and uint channels with the library itself. */
 static void write_tiles(const char *path, const float *depth, const uint32_t *id, int tile)
 {
     exr_context_t c = NULL;

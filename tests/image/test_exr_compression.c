@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Packed EXR files of other programs: what this OpenEXR unpacks is read, the rest is refused by name. */
+/* Compressed EXR files of other programs: what this OpenEXR decompresses is read, the rest is refused by name. */
 #include <OpenEXR/openexr.h>
 
 #include "base/rng.h"
@@ -9,7 +9,7 @@
 
 enum { WIDTH = 37, HEIGHT = 41, COUNT = WIDTH * HEIGHT };
 
-/* A line of half floats, packed by ZIP, in a file that says that it is by another method. */
+/* Writes a line of half floats, compressed by ZIP, into a file that states another method. */
 static void write_line(const char *path, const float *value, int said)
 {
     static const char ZIP[] = "compression\0compression\0\1\0\0\0\3";
@@ -25,7 +25,7 @@ static void write_line(const char *path, const float *value, int said)
     free(bytes);
 }
 
-/* A picture of floats that the library itself packs; the result is what it says of that. */
+/* Writes a picture of floats that the library compresses, and returns the library's result. */
 static exr_result_t write_packed(const char *path, const float *value, exr_compression_t how)
 {
     exr_context_t c = NULL;
@@ -65,7 +65,7 @@ static status read_depth(const char *path, float *value)
     return s;
 }
 
-/* What noise is packed into is no smaller, whatever packs it, and such a file holds it as it was. */
+/* Noise does not get smaller by compression, and is stored raw in such files. */
 static void what_b44_could_not_pack_is_read_as_it_was(void **state)
 {
     (void)state;
@@ -78,8 +78,7 @@ static void what_b44_could_not_pack_is_read_as_it_was(void **state)
     assert_memory_equal(depth2, depth, sizeof depth);
 }
 
-/* DWA loses something in channels of colour alone. The C library of OpenEXR 3.1.5 does not know it, that of 3.1.13
- * does. */
+/* DWA is lossy in colour channels only. The C library of OpenEXR 3.1.5 does not support it, that of 3.1.13 does. */
 static void what_dwa_packed_is_read_or_refused_with_what_to_do(void **state)
 {
     (void)state;
@@ -103,7 +102,7 @@ static void what_dwa_packed_is_read_or_refused_with_what_to_do(void **state)
     }
 }
 
-/* The library takes a method that it has never heard of for ZIP. */
+/* The library takes an unknown method for ZIP. */
 static void compression_of_another_age_is_refused_with_what_to_do(void **state)
 {
     (void)state;

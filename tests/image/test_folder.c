@@ -6,7 +6,7 @@
 
 #include "base/file.h"
 #include "image/read/folder.h"
-/* after the project's headers, for it brings cmocka */
+/* last, as cmocka defines a macro named fail */
 #include "flat.h"
 
 static void write_text(const char *name, const char *text)
@@ -14,7 +14,7 @@ static void write_text(const char *name, const char *text)
     assert_int_equal(file_write(scratch_path(name), text, strlen(text)), OK);
 }
 
-/* White in the right half, black in the left; or a ramp, as no mask is. */
+/* Writes white in the right half and black in the left, or a ramp, which no mask is. */
 static void write_halves(const char *name, bool ramp)
 {
     img p;
@@ -55,7 +55,7 @@ static void content_tells_what_a_picture_is(void **state)
     assert_photo("f.jxl", false);
 }
 
-/* Reading it says what is wrong with it, where leaving it aside would be taken for success. */
+/* Reading it then reports what is wrong, while skipping it would look like success. */
 static void what_is_called_like_a_picture_but_is_damaged_counts_as_one(void **state)
 {
     (void)state;
@@ -101,7 +101,7 @@ static void a_mask_lies_beside_its_photograph(void **state)
     img_folder_free(&f);
 }
 
-/* carnival-mask.jpg may show one. */
+/* carnival-mask.jpg may be a photograph of one. */
 static void a_name_alone_is_believed_where_the_picture_looks_like_a_mask(void **state)
 {
     (void)state;
@@ -111,7 +111,7 @@ static void a_name_alone_is_believed_where_the_picture_looks_like_a_mask(void **
     assert_photo("carnival-mask.png", false);
     write_halves("mask_01.png", true);
     assert_photo("mask_01.png", true);
-    write_halves("carnival.mask.png", true); /* a photograph is not called so */
+    write_halves("carnival.mask.png", true); /* photographs do not have such names */
     assert_photo("carnival.mask.png", false);
 }
 

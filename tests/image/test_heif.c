@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* HEIC as the command reads it: libvips has started without its modules, and HEIF's is brought when a picture needs it.
- * The fixture is made by a child, because the libvips that writes it has its modules. */
+/* HEIC as in the command: libvips starts without its modules, and HEIF's is loaded when a picture needs it. The fixture
+ * is written by a child process, because libvips must have its modules to write it. */
 #include <math.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -15,7 +15,7 @@
 enum { SIDE = 64 };
 static const double one[3] = {1, 1, 1}, sienna[3] = {180, 90, 60};
 
-/* In the colours of a telephone's camera, Display P3. */
+/* Writes a square in Display P3, as telephones' cameras do. */
 static int write_square(const char *path)
 {
     VipsImage *black = NULL, *plain = NULL, *codes = NULL, *srgb = NULL, *wide = NULL;

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Pictures whose decoders hold them as a whole: a few bytes that claim millions of pixels are refused before they are
- * decoded. */
+/* Pictures that decoders hold as a whole: a few bytes that claim millions of pixels are refused before decoding. */
 #include <stdio.h>
 #include <string.h>
 
 #include "image/read/read.h"
 #include "scratch.h"
 
-/* last: it claims the word fail */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -33,7 +32,7 @@ static void expect_refusal(const char *path, const char *words)
     assert_null(color.data);
 }
 
-/* Lossless; the size stands in its first 28 bits, less one. */
+/* The picture is lossless; its size minus one is in the first 28 bits. */
 static void a_webp_of_too_many_pixels_is_refused_by_its_head(void **state)
 {
     (void)state;
@@ -74,7 +73,7 @@ static void a_jpeg_in_scans_of_too_many_pixels_is_refused_by_its_head(void **sta
     expect_refusal(write_bytes("apart.jpg", file, jpeg_of(0xc0, 1, file)), "held as a whole");
 }
 
-/* A usual one is read row by row, whatever its size: this one is refused because it ends. */
+/* A baseline JPEG is read row by row, whatever its size: this one is refused because it is truncated. */
 static void a_jpeg_in_one_scan_is_not_refused_for_its_size(void **state)
 {
     (void)state;
@@ -85,7 +84,7 @@ static void a_jpeg_in_one_scan_is_not_refused_for_its_size(void **state)
     assert_null(strstr(status_message(), "held as a whole"));
 }
 
-/* Of two pixels, whose text claims two billion bytes: libpng would make room for them. */
+/* A PNG of two pixels has a text chunk that claims two billion bytes, for which libpng would allocate memory. */
 static void a_png_whose_text_is_longer_than_the_file_is_refused(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Files are told by their content. */
+/* Files are recognized by their content. */
 #include "image/formats/img_format.h"
 
 #include <setjmp.h>
@@ -12,7 +12,7 @@
 #include "image/write/write.h"
 
 #include "scratch.h"
-#include <cmocka.h> /* after the project's own headers: it has a macro named fail */
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
 static const char *put(const char *name, const void *data, size_t size)
 {
@@ -70,7 +70,7 @@ static void the_brands_of_a_still_picture_may_stand_behind_another(void **state)
     assert_null(img_format_of(put("a", film, 24)).name);
 }
 
-/* 2 x 1 of three bytes, whole, and without its last byte. */
+/* The picture is 2 x 1 of three bytes, once complete and once without its last byte. */
 static void a_tga_is_known_by_a_head_in_which_all_fits(void **state)
 {
     (void)state;

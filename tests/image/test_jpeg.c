@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* cmocka names a macro fail, so that it comes behind base/status.h */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -12,7 +12,7 @@
 
 #include <cmocka.h>
 
-enum { WIDTH = 37, HEIGHT = 21, BYTES = WIDTH * HEIGHT * 3 }; /* no multiples of JPEG's blocks */
+enum { WIDTH = 37, HEIGHT = 21, BYTES = WIDTH * HEIGHT * 3 }; /* not multiples of JPEG's blocks */
 
 static void grey_stays_grey(void **unused)
 {

@@ -14,7 +14,7 @@ static bool is_object(int i)
     return x >= LEFT && x < RIGHT && y >= TOP && y < BOTTOM;
 }
 
-/* A picture of samples of 8 or 16 bits in a file. */
+/* Saves samples of 8 or 16 bits as a picture. */
 static const char *save(const void *samples, int bands, VipsBandFormat format, const char *name)
 {
     const char *path = scratch_path(name);
@@ -43,7 +43,7 @@ static void fill(uint8_t outside, uint8_t inside, uint8_t codes[PIXELS])
         codes[i] = is_object(i) ? inside : outside;
 }
 
-/* The object is selected by half, and nothing else is; sharply: by all. */
+/* Asserts that the mask is at least one half on the object and nowhere else; sharply: 1 and 0. */
 static void assert_selects_object(const char *path, bool sharply)
 {
     img mask;
@@ -157,7 +157,7 @@ static void noise_of_jpeg_about_two_values_is_no_more_values(void **state)
             values += !seen[(int)(mask.data[i] * 255)]++;
         }
         assert_int_equal(wrong, 0);
-        assert_true(k > 0 || values > 2); /* there is noise */
+        assert_true(k > 0 || values > 2); /* noise is present */
         img_free(&mask);
     }
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* netpbm's formats, BMP and TGA, byte by byte as their specifications have them. */
+/* netpbm's formats, BMP and TGA, written byte by byte by their specifications. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -9,7 +9,7 @@
 
 #include "writes.h"
 
-/* Words of 8, 16 and 32 bits, the smallest first, that make a file. */
+/* Words of 8, 16 and 32 bits, little endian, that make a file. */
 typedef struct bytes {
     size_t count;
     uint8_t at[4096];
@@ -33,7 +33,7 @@ static const char *save(const bytes *b, const char *name)
     return scratch_path(name);
 }
 
-/* Reads a picture that shows these codes of 8 bits, and as a cover, if any, these. */
+/* Asserts that a picture has these 8-bit codes and, if not NULL, this alpha. */
 static void assert_shows(const char *path, int width, int height, int channels, const uint8_t *codes,
                          const uint8_t *cover)
 {
@@ -66,14 +66,14 @@ static void assert_refused(const char *path, const char *words)
     assert_null(color.data);
 }
 
-/* No byte of a file may be missing. */
+/* Asserts that a file with any byte missing at its end is refused. */
 static void assert_needs_all(bytes b, const char *name)
 {
     b.count--;
     assert_refused(save(&b, name), "cut short");
 }
 
-/* 3 x 2, all of other colours. */
+/* 3 x 2 pixels, all different. */
 static const uint8_t six[18] = {250, 20, 30, 40, 250, 60, 70, 80, 250, 100, 110, 120, 130, 140, 150, 160, 170, 180};
 static const uint8_t greys[6] = {0, 50, 100, 150, 200, 255};
 
@@ -82,10 +82,10 @@ static const uint8_t greys[6] = {0, 50, 100, 150, 200, 255};
 static bytes tga_head(int type, int width, int height, int bits, int descriptor)
 {
     bytes b = {0};
-    put(&b, 1, 3); /* bytes of a remark behind the head */
+    put(&b, 1, 3); /* bytes of a comment after the header */
     put(&b, 1, type % 8 == 1);
     put(&b, 1, (uint32_t)type);
-    put(&b, 2, type % 8 == 1 ? 2 : 0); /* the map begins with index 2 */
+    put(&b, 2, type % 8 == 1 ? 2 : 0); /* the colour map begins with index 2 */
     put(&b, 2, type % 8 == 1 ? 3 : 0);
     put(&b, 1, type % 8 == 1 ? 24 : 0);
     put(&b, 4, 0);
@@ -121,8 +121,8 @@ static void runs_of_a_tga_reach_over_its_rows(void **state)
     (void)state;
     static const uint8_t shown[6] = {9, 7, 7, 7, 7, 8};
     bytes b = tga_head(11, 3, 2, 8, 0x20);
-    put(&b, 2, 0x0900); /* one as it is */
-    put(&b, 2, 0x0783); /* four alike */
+    put(&b, 2, 0x0900); /* one literal pixel */
+    put(&b, 2, 0x0783); /* four equal pixels */
     put(&b, 2, 0x0800);
     assert_shows(save(&b, "a.tga"), 3, 2, 1, shown, NULL);
     assert_needs_all(b, "a.tga");
@@ -146,11 +146,11 @@ static void sixteen_bits_of_a_tga_are_five_a_colour(void **state)
     static const uint8_t shown[6] = {255, 0, 132, 0, 255, 0}; /* 132 is 16 of 31 */
     bytes b = tga_head(2, 2, 1, 16, 0x20);
     put(&b, 2, 31 << 10 | 16);
-    put(&b, 2, 31 << 5 | 0x8000); /* what is no attribute says nothing */
+    put(&b, 2, 31 << 5 | 0x8000); /* a bit that is not an attribute is ignored */
     assert_shows(save(&b, "a.tga"), 2, 1, 3, shown, NULL);
 }
 
-/* Behind the pixels: what alpha is, and the curve's exponent as a fraction. */
+/* Appends the extension area: the kind of alpha, and the curve's exponent as a fraction. */
 static void put_extension(bytes *b, int alpha, int over, int under)
 {
     size_t at = b->count;
@@ -275,7 +275,7 @@ static void a_bmp_stands_on_its_last_row_unless_its_height_is_negative(void **st
     put_24_bits(&b, false);
     assert_shows(save(&b, "a.bmp"), 3, 2, 3, six, NULL);
     b.count -= 3;
-    assert_shows(save(&b, "a.bmp"), 3, 2, 3, six, NULL); /* without what fills the last row up */
+    assert_shows(save(&b, "a.bmp"), 3, 2, 3, six, NULL); /* without the padding of the last row */
     assert_needs_all(b, "a.bmp");
     b = bmp_head(&(bmp_words){124, 3, -2, 24, 0, 0, NULL}, NULL);
     put_24_bits(&b, true);
@@ -304,7 +304,7 @@ static void palettes_of_a_bmp_have_1_4_or_8_bits(void **state)
         }
 }
 
-/* Of indices 0 and 1 in 4 x 3, from below: two ones; nothing; from the second on the same as they stand. */
+/* Indices 0 and 1 in 4 x 3 pixels, from below: two ones; nothing; a literal run from the second pixel on. */
 static void runs_of_a_bmp_step_over_what_they_leave(void **state)
 {
     (void)state;
@@ -337,7 +337,7 @@ static void masks_of_a_bmp_are_its_colours(void **state)
         put(&b, 1, cover[i]);
     }
     assert_shows(save(&b, "a.bmp"), 2, 1, 3, six, cover);
-    memset(b.at + 14 + 40 + 12, 0, 4); /* no mask of alpha */
+    memset(b.at + 14 + 40 + 12, 0, 4); /* no alpha mask */
     assert_shows(save(&b, "a.bmp"), 2, 1, 3, six, NULL);
 }
 
@@ -406,7 +406,7 @@ static void the_largest_sample_of_netpbm_is_1(void **state)
     assert_refused(save_text("P5\n2 1\n100\n", "\x64\x65", 2), "damaged");
 }
 
-/* From the bottom row, whichever byte comes first. */
+/* Rows run from the bottom, in either byte order. */
 static void floats_of_netpbm_are_linear(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Colour profiles: what they say of whole numbers and of floats, beside alpha, and of grey pictures. */
+/* Colour profiles for integers and for floats, with alpha, and of grey pictures. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,7 +9,7 @@
 #include "image/metadata/icc.h"
 #include "image/read/read.h"
 
-/* last: it claims the word fail */
+/* last, as cmocka defines a macro named fail */
 #include "scratch.h"
 
 #include <setjmp.h>
@@ -41,7 +41,7 @@ static void fixed(bytes *b, double v)
     big(b, (uint32_t)(int32_t)lround(v * 65536), 4);
 }
 
-/* Display P3's primaries as under D50 (columns), or grey, with the curve light = code^gamma. */
+/* Makes a profile of Display P3's primaries under D50 (columns), or of grey, with the curve light = code^gamma. */
 static bytes make_profile(bool grey, double gamma)
 {
     static const double p3[3][3] = {
@@ -135,7 +135,7 @@ static void expect(const picture *p, const bytes *profile, double red, double gr
     img_free(&cover);
 }
 
-/* Linear sRGB of light in Display P3's primaries. */
+/* Converts light from Display P3's primaries to linear sRGB. */
 #define OF_P3(r, g, b)                                                                                                 \
     1.22494 * (r)-0.22494 * (g), -0.04206 * (r) + 1.04206 * (g), -0.01964 * (r)-0.07864 * (g) + 1.09827 * (b)
 
@@ -195,7 +195,7 @@ static void damaged_profiles_say_nothing(void **state)
     assert_true(icc_light(whole.at, whole.size, &light) && light.curve == PICTURE_CURVE_POWER);
     assert_true(fabsf(light.exponent - 2) < 0.01f);
     for (size_t size = 0; size < whole.size - 4; size++) {
-        unsigned char *part = malloc(size + 1); /* of its own, so that a sanitizer sees what lies beyond */
+        unsigned char *part = malloc(size + 1); /* allocated separately, so that a sanitizer sees accesses beyond it */
         memcpy(part, whole.at, size);
         assert_false(icc_light(part, size, &light));
         free(part);

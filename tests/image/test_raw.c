@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Raw pictures, which most cameras write in a TIFF's frame. */
+/* Raw pictures, which most cameras write as TIFF containers. */
 #include <math.h>
 
 #include "image/read/read.h"
@@ -70,7 +70,7 @@ static void what_the_sensor_saw_is_read_to_scale(void **state)
     assert_colour(&image, 0, 0, orange, 1);
     assert_colour(&image, WIDTH / 2, HEIGHT / 2, orange, 1);
     img_free(&image);
-    /* a developer of photographs would brighten it */
+    /* processing as a photograph would brighten it */
     d = picture(dim);
     read_measured(&d, &image);
     assert_colour(&image, WIDTH / 2, HEIGHT / 2, orange, 1 / 20.0f);
@@ -103,7 +103,7 @@ static void what_saturates_in_one_colour_is_no_measurement(void **state)
     img_free(&image);
 }
 
-/* A set's pictures keep their colours against each other, whatever each one's white balance. */
+/* A set's pictures keep their colours relative to each other, whatever their white balance. */
 static void photographs_are_white_balanced_and_measurements_are_not(void **state)
 {
     (void)state;
@@ -168,7 +168,7 @@ static float bright_half(int x, int y, int channel)
     return (x < WIDTH / 2 ? 2.5f : 0.25f) * (channel == 1 ? 1 : 0.5f);
 }
 
-/* Of three colours and of a mosaic, of each width, with and without the predictor, for white of 1 and of 4. */
+/* Three colours and a mosaic, each width, with and without the predictor, for white of 1 and of 4. */
 static void raw_pictures_of_floats_are_light_beyond_white(void **state)
 {
     (void)state;

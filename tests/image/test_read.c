@@ -17,7 +17,7 @@ static void every_8_bit_code_becomes_its_linear_value_and_back(void **state)
     assert_int_equal(color.width, 16);
     assert_int_equal(color.channels, 3);
     assert_null(alpha.data);
-    /* the table is the double formula rounded to float */
+    /* the table is the formula in double, rounded to float */
     for (int i = 0; i < 768; i++)
         assert_true(color.data[i] == (float)exact(i / 3 / 255.0));
     assert_int_equal(img_write_png(scratch_path("b.png"), &color, IMG_SRGB8), OK);
@@ -99,7 +99,7 @@ static void every_photograph_format_is_read(void **state)
         int width, height;
         assert_int_equal(img_read_size(scratch_path(names[k]), &width, &height), OK);
         assert_true(width == 16 && height == 8);
-        /* away from the borders, where lossy formats smear; 0.06 is what their default quality costs here */
+        /* away from the borders, where lossy formats smear; 0.06 is the error of their default quality here */
         assert_true(fabsf(img_at(&color, 2, 1)[0] - srgb_decode(250 / 255.0f)) < 0.06f);
         assert_true(fabsf(img_at(&color, 13, 6)[2] - srgb_decode(100 / 255.0f)) < 0.06f);
         assert_true(img_at(&color, 13, 1)[0] < 0.06f);
@@ -107,7 +107,7 @@ static void every_photograph_format_is_read(void **state)
     }
 }
 
-/* Interlaced, by a palette, two greys a bit each: what a reader must unfold. */
+/* Interlaced, with a palette, and two greys of one bit each are decoded. */
 static void pngs_of_every_layout_show_the_same(void **state)
 {
     (void)state;
@@ -119,7 +119,7 @@ static void pngs_of_every_layout_show_the_same(void **state)
         g_object_unref(image);
         assert_int_equal(failed, 0);
         assert_int_equal(img_read(scratch_path("laid.png"), &color, NULL), OK);
-        for (size_t i = 0; i < 3 * 16 * 8; i++) /* a palette's colours are found by clustering: a code of error */
+        for (size_t i = 0; i < 3 * 16 * 8; i++) /* a palette's colours are found by clustering: one code of error */
             assert_true(fabsf(color.data[i] - plain.data[i]) <= (palette ? 0.01f : 0));
         img_free(&color);
     }
@@ -134,7 +134,7 @@ static void pngs_of_every_layout_show_the_same(void **state)
     img_free(&plain);
 }
 
-/* A line of three grey pixels; exif (NULL: none) stands behind them if it is late. */
+/* Writes a line of three grey pixels; exif (NULL: none) follows them if it is late. */
 static void write_png(const char *path, const uint8_t codes[3], double gamma, uint8_t exif[26], bool late)
 {
     FILE *f = fopen(path, "wb");
@@ -187,7 +187,7 @@ static void a_png_is_turned_wherever_its_exif_stands(void **state)
         assert_int_equal(img_read(scratch_path("turned.png"), &color, NULL), OK);
         assert_int_equal(color.width, 1);
         assert_int_equal(color.height, 3);
-        /* its first column is seen at the bottom, and its gamma is honoured, too */
+        /* its first column is seen at the bottom, and its gamma is applied, too */
         assert_true(color.data[0] == 1 && color.data[3] == 0.2f && color.data[6] == 0);
         img_free(&color);
     }
@@ -273,8 +273,8 @@ static void grey_with_alpha_becomes_colour_and_alpha(void **state)
 static void embedded_profile_is_honoured(void **state)
 {
     (void)state;
-    /* pure red of the wider P3 primaries is beyond sRGB's red and clips to it; its half bright red keeps a ratio that
-     * the same codes without the profile do not have */
+    /* pure red of the wider P3 primaries is beyond sRGB's red and clips to it; its half bright red has another ratio
+     * than the same codes without the profile */
     uint8_t codes[2][3] = {{200, 100, 100}, {128, 128, 128}};
     VipsImage *plain = fixture(codes, 2, 1, 3, VIPS_INTERPRETATION_sRGB), *p3 = NULL;
     img tagged = {0}, untagged = {0};
@@ -288,7 +288,7 @@ static void embedded_profile_is_honoured(void **state)
         assert_true(fabsf(srgb_encode(tagged.data[c]) * 255 - codes[0][c]) < 1.5f);
         assert_true(fabsf(srgb_encode(tagged.data[3 + c]) * 255 - codes[1][c]) < 1.5f);
     }
-    /* without the profile the P3 codes mean a duller red */
+    /* without the profile the P3 codes are a duller red */
     VipsImage *stripped = vips_image_new_from_file(scratch_path("p3.png"), NULL);
     assert_int_equal(vips_pngsave(stripped, scratch_path("stripped.png"), "strip", TRUE, NULL), 0);
     g_object_unref(stripped);
@@ -298,7 +298,7 @@ static void embedded_profile_is_honoured(void **state)
     img_free(&untagged);
 }
 
-/* A measurement's 16 bits are linear; those that an editor developed say by their profile that they are not. */
+/* A measurement's 16 bits are linear; an editor's pictures state by their profile that they are not. */
 static void samples_of_16_bits_mean_what_their_profile_says(void **state)
 {
     (void)state;
@@ -358,7 +358,7 @@ static void cielab_of_8_bits_is_colour(void **state)
     (void)state;
     img color = {0};
     assert_int_equal(img_read(save_quarters_in(VIPS_INTERPRETATION_LABQ, "lab.tif"), &color, NULL), OK);
-    /* half a step of a* and b* is up to three codes of so saturated colours */
+    /* half a step of a* and b* is up to three codes of such saturated colours */
     assert_true(fabsf(srgb_encode(img_at(&color, 2, 1)[0]) - 250 / 255.0f) <= 3.01f / 255);
     assert_true(fabsf(srgb_encode(img_at(&color, 13, 6)[2]) - 100 / 255.0f) <= 3.01f / 255);
     img_free(&color);

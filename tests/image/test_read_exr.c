@@ -53,7 +53,7 @@ static void exr_pictures_are_found_by_their_channels(void **state)
     img_free(&picture);
 }
 
-/* One line of floats, uncompressed. */
+/* Writes one line of floats, uncompressed. */
 static void write_part(exr_context_t file, int part, int first_line, int channels, const float *line, int width)
 {
     exr_encode_pipeline_t e = EXR_ENCODE_PIPELINE_INITIALIZER;
@@ -91,7 +91,7 @@ static exr_attr_box2i_t box(int left, int top, int right, int bottom)
     return b;
 }
 
-/* Two pixels of R = 1 and G = 1 with the windows and chromaticities given (NULL: none). */
+/* Writes two pixels, R = 1 and G = 1, with the given windows and chromaticities (NULL: none). */
 static void write_view(const char *name, const exr_attr_box2i_t *data, const exr_attr_box2i_t *display,
                        const exr_attr_chromaticities_t *primaries)
 {
@@ -133,13 +133,13 @@ static void the_chromaticities_of_an_exr_are_honoured(void **state)
     }
     write_view("view.exr", &window, &window, &acescg);
     assert_int_equal(img_read_samples(scratch_path("view.exr"), true, &color, &bits), OK);
-    assert_memory_equal(color.data, same, sizeof same); /* a measurement stays what it is */
+    assert_memory_equal(color.data, same, sizeof same); /* a measurement is not converted */
     img_free(&color);
     write_view("view.exr", &window, &window, &none);
     assert_int_equal(img_read(scratch_path("view.exr"), &color, NULL), MERLIN_BAD_INPUT);
 }
 
-/* As programs crop their pictures to what is not black, and render more than is to be seen. */
+/* Programs crop their pictures to what is not black, and render more than is visible. */
 static void an_exr_is_what_its_display_window_shows(void **state)
 {
     (void)state;
@@ -151,7 +151,7 @@ static void an_exr_is_what_its_display_window_shows(void **state)
     assert_int_equal(img_read_size(scratch_path("around.exr"), &width, &height), OK);
     assert_true(width == 4 && height == 3);
     assert_int_equal(img_read(scratch_path("around.exr"), &color, NULL), OK);
-    for (int i = 0; i < 36; i++) /* red in the second, green in the third of the middle row */
+    for (int i = 0; i < 36; i++) /* red in the second, green in the third pixel of the middle row */
         assert_true(color.data[i] == (i == 15 || i == 19));
     img_free(&color);
     write_view("part.exr", &data, &part, NULL);
@@ -164,7 +164,7 @@ static void an_exr_is_what_its_display_window_shows(void **state)
     img_free(&color);
 }
 
-/* As renderers write them: a part a layer, sorted by whatever they sort them by. */
+/* Renderers write one part a layer, in any order. */
 static void an_exr_is_its_first_part_that_is_a_picture(void **state)
 {
     (void)state;
@@ -190,7 +190,7 @@ static void an_exr_is_its_first_part_that_is_a_picture(void **state)
     img_free(&alpha);
 }
 
-/* As OpenEXR's convention wants it, and Blender writes it. */
+/* OpenEXR's convention is premultiplied colour, which Blender follows. */
 static void colour_of_an_exr_is_not_times_its_alpha(void **state)
 {
     (void)state;
@@ -206,13 +206,13 @@ static void colour_of_an_exr_is_not_times_its_alpha(void **state)
         assert_true(alpha.data[i] == rgba[4 * i + 3]);
     img_free(&color);
     img_free(&alpha);
-    /* who does not ask for alpha sees it over black */
+    /* without alpha it is seen over black */
     assert_int_equal(img_read(scratch_path("rgba.exr"), &color, NULL), OK);
     assert_true(color.data[3] == 1);
     img_free(&color);
 }
 
-/* As merlin estimate writes them. */
+/* These are files of merlin estimate. */
 static void the_mask_of_maps_is_their_alpha(void **state)
 {
     (void)state;

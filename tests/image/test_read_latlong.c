@@ -3,7 +3,7 @@
 
 #include "image/read/read.h"
 
-/* last, for it brings cmocka */
+/* last, as cmocka defines a macro named fail */
 #include "flat.h"
 
 static const char *grey_picture(const char *name, int width, int height)

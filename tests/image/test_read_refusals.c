@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Pictures that are refused, each in one line. */
+/* Pictures that are refused, each with one line. */
 #include "read_fixture.h"
 
-/* Refused in one line that names the file and says the words. */
+/* Asserts that a picture is refused in one line that contains the file's name and the words. */
 static void assert_refused(const char *path, const char *words)
 {
     img color = {0}, alpha = {0}, mask = {0};
@@ -110,7 +110,7 @@ static void *read_damaged_often(void *context)
     return (void *)wrong;
 }
 
-/* libvips keeps one for all. */
+/* libvips keeps one message for all threads. */
 static void every_thread_has_the_message_of_its_own_picture(void **state)
 {
     (void)state;
@@ -152,7 +152,7 @@ static uint32_t crc32_of(const uint8_t *data, size_t size)
 static void huge_pictures_are_refused_by_their_header(void **state)
 {
     (void)state;
-    /* a PNG of 20000 × 20000 (0x4e20) with a right header and no more */
+    /* a PNG of 20000 × 20000 (0x4e20) with a valid header and nothing else */
     uint8_t head[45] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0, 0,    0,    13, 'I',
                         'H',  'D', 'R', 0,   0,    0x4e, 0x20, 0,    0, 0x4e, 0x20, 8,  2};
     uint32_t crc = crc32_of(head + 12, 17);
@@ -185,7 +185,7 @@ static void what_is_not_finite_is_refused(void **state)
     assert_refused(save(bare, "inf.tif"), "not finite");
 }
 
-/* Ink where others have light: read as it is, such a mask would choose what lies beside the object. */
+/* CMYK has ink where others have light: read directly, such a mask would select the background. */
 static void masks_in_ink_are_refused(void **state)
 {
     (void)state;

@@ -90,8 +90,8 @@ static void enlarging_follows_a_smooth_wave(void **state)
     for (int x = 0; x < SMALL; x++)
         from.data[x] = cosf((float)(x + 0.5) / 8 * 3.14159265f);
     assert_int_equal(img_resize(&from, LARGE, 1, &to), OK);
-    /* 16 samples a period: Lanczos-3's ripple there is below 1 % (its weights' sum before normalization); edges apart
-     */
+    /* 16 samples a period: Lanczos-3's ripple there is below 1 % (its weights' sum before normalization); edges
+     * excluded */
     for (int x = 12; x < LARGE - 12; x++)
         assert_true(fabsf(to.data[x] - cosf((float)(x + 0.5) / 3 / 8 * 3.14159265f)) < 0.01f);
     img_free(&from);
@@ -167,7 +167,7 @@ static void guided_upsampling_keeps_constants(void **state)
 static void guided_upsampling_follows_the_guides_edges(void **state)
 {
     (void)state;
-    /* an edge at x = 37 of 64, which the map at a quarter of the size knows only as a mixed pixel */
+    /* an edge at x = 37 of 64, which the map at a quarter of the size has only as a mixed pixel */
     enum { SIZE = 64, EDGE = 37 };
     img fine = make(SIZE, SIZE, 1), low, out, plain;
     for (int i = 0; i < SIZE * SIZE; i++)
@@ -180,8 +180,8 @@ static void guided_upsampling_follows_the_guides_edges(void **state)
         worst = fmaxf(worst, fabsf(out.data[i] - fine.data[i]));
         worst_plain = fmaxf(worst_plain, fabsf(plain.data[i] - fine.data[i]));
     }
-    /* the map is a linear function of the guide, so that only epsilon pulls: 1e-4 beside an edge's variance of 0.1 in
-     * windows over it, and flat windows pull to their own mean */
+    /* the map is a linear function of the guide, so that the only error is epsilon's: 1e-4 beside an edge's variance of
+     * 0.1 in windows over it, while flat windows tend to their own mean */
     assert_true(worst < 0.02f);
     assert_true(worst_plain > 0.2f);
     img_free(&fine);
@@ -193,7 +193,7 @@ static void guided_upsampling_follows_the_guides_edges(void **state)
 static void nothing_leaks_through_the_mask(void **state)
 {
     (void)state;
-    /* outside the mask both map and guide hold something wild */
+    /* outside the mask both map and guide hold extreme values */
     enum { SIZE = 64, LOW = 16 };
     img low = make(LOW, LOW, 1), low_mask = make(LOW, LOW, 1), guide = make(SIZE, SIZE, 3), mask = make(SIZE, SIZE, 1);
     img out;
@@ -202,7 +202,7 @@ static void nothing_leaks_through_the_mask(void **state)
         low.data[i] = i % LOW < 8 ? 0.5f : NAN;
     }
     for (int i = 0; i < SIZE * SIZE; i++) {
-        mask.data[i] = i % SIZE < 34; /* reaches a little beyond the low mask, as a finer outline does */
+        mask.data[i] = i % SIZE < 34; /* extends a little beyond the low mask, as a finer outline does */
         for (int c = 0; c < 3; c++)
             guide.data[3 * i + c] = i % SIZE < 34 ? noise((unsigned)i) : 50;
     }
@@ -214,7 +214,7 @@ static void nothing_leaks_through_the_mask(void **state)
             assert_true(out.data[i] == 0);
     }
     img_free(&out);
-    /* far from all the map knows, its mean is the answer */
+    /* far from the map's pixels, its mean is the result */
     memset(low_mask.data, 0, count_of(&low_mask) * sizeof(float));
     low_mask.data[0] = 1;
     assert_int_equal(img_guided_upsample(&low, &low_mask, &guide, &mask, 1, 1e-3f, &out), OK);

@@ -11,7 +11,8 @@
 
 #include "scratch.h"
 
-/* By itself, because libvips starts once a program: here it is the program's own before it is ours. */
+/* This test is a program of its own, because libvips starts once a program: here the program starts it before the
+ * library does. */
 enum { SIDE = 16, THREADS = 3, KEPT = 70 };
 
 static void write_grey(const char *path, double code)
@@ -45,7 +46,7 @@ static void a_program_keeps_its_own_settings_of_libvips(void **state)
     assert_true(read_grey(scratch_path("grey.jpg")) == 1);
     assert_int_equal(vips_concurrency_get(), THREADS);
     assert_int_equal(vips_cache_get_max(), KEPT);
-    /* but what it keeps is not taken for a file that was replaced */
+    /* a cached picture is not used in place of a replaced file */
     write_grey(scratch_path("grey.jpg"), 0);
     assert_true(read_grey(scratch_path("grey.jpg")) == 0);
 }

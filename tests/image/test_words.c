@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Tests what pictures say about themselves: their curve, the page that is meant, a size beyond what is held. */
+/* What pictures state about themselves: their curve, the page that is meant, and sizes beyond what is held in memory.
+ */
 #include <math.h>
 #include <png.h>
 #include <stdio.h>
@@ -15,10 +16,10 @@ typedef struct png_words {
     bool srgb;
     double gamma;
     const double *chromaticities;
-    const uint8_t *cicp; /* its four bytes */
+    const uint8_t *cicp; /* four bytes of the cICP chunk */
 } png_words;
 
-/* A line of grey or RGB codes of 16 bits, of the same value in each channel. */
+/* Writes a line of grey or RGB codes of 16 bits, the same value in each channel. */
 static void write_png16(const char *path, const uint16_t *codes, int width, int channels, const png_words *words)
 {
     FILE *f = fopen(path, "wb");
@@ -56,7 +57,7 @@ static float half_as(const png_words *words, int *bits)
     return value;
 }
 
-/* As photographs, to img_read. */
+/* Reads the picture as a photograph, by img_read. */
 static float photograph_half(void)
 {
     img color;
@@ -84,9 +85,9 @@ static void sixteen_bits_are_decoded_by_the_curve_that_a_png_states(void **state
         int bits;
         assert_float_equal(half_as(&told[i].words, &bits), told[i].light, 2e-6);
         assert_int_equal(bits, 16);
-        assert_float_equal(photograph_half(), told[i].light, 2e-6); /* alike */
+        assert_float_equal(photograph_half(), told[i].light, 2e-6); /* the same value */
     }
-    int bits; /* nothing said: a measurement, or a photograph */
+    int bits; /* without a statement: as a measurement, or as a photograph */
     assert_float_equal(half_as(&(png_words){0}, &bits), 0.500008, 1e-6);
     assert_float_equal(photograph_half(), 0.214048, 2e-6);
 }
@@ -96,8 +97,8 @@ static void codes_of_bright_curves_are_light_with_a_unit(void **state)
     (void)state;
     static const uint8_t pq[4] = {1, 16, 0, 1}, hlg[4] = {1, 18, 0, 1};
     int bits;
-    /* half of PQ's codes are 92.246 cd/m², of which 203 are 1; half of HLG's a twelfth of its light, 0.26496 of which
-     * is 1 */
+    /* half of PQ's codes are 92.246 cd/m², where 203 is 1; half of HLG's are a twelfth of its light, where 0.26496 is 1
+     */
     assert_float_equal(half_as(&(png_words){.cicp = pq}, &bits), 92.246 / 203, 2e-4);
     assert_int_equal(bits, 32);
     assert_float_equal(half_as(&(png_words){.cicp = hlg}, &bits), 1 / 12.0 / 0.26496, 2e-4);
@@ -158,7 +159,7 @@ typedef struct entry {
     uint32_t count, value;
 } entry;
 
-/* Pages of 8 or 16 bits of grey, each of one code; kind: TIFF's NewSubfileType. */
+/* A page of 8 or 16 bits of grey, all of one code; kind: TIFF's NewSubfileType. */
 typedef struct page {
     int width, height;
     uint16_t code;
@@ -166,7 +167,7 @@ typedef struct page {
     bool exif_srgb;
 } page;
 
-/* Each page's entries begin at a place known beforehand: pixels first, all of one page behind the other. */
+/* Writes pages whose entries are at known positions: pixels first, one page after the other. */
 static void write_pages(const char *path, const page *pages, int count)
 {
     FILE *f = fopen(path, "wb");
@@ -256,7 +257,7 @@ static void a_tiff_of_16_bits_whose_exif_says_srgb_is_decoded(void **state)
     }
 }
 
-/* Black and white by columns, 8 bits of grey. */
+/* Writes alternating black and white columns, 8 bits of grey. */
 static void write_wide_png(const char *path, int width, int height)
 {
     FILE *f = fopen(path, "wb");
@@ -295,13 +296,13 @@ static void what_is_too_large_is_read_at_a_reduced_size(void **state)
     assert_true(facts.reduced == 2 && facts.frames == 1);
     assert_int_equal(img_read(scratch_path("wide.png"), &color, NULL), OK);
     assert_true(color.width == 10001 && color.height == 3);
-    /* the means of 0.2 and 1, of 0 and 1, and the last column alone; the last row is one of the file's */
+    /* the means of 0.2 and 1, of 0 and 1, and the last column alone; the last row is one row of the file */
     assert_float_equal(color.data[0], 0.6, 1e-6);
     assert_float_equal(img_at(&color, 8000, 2)[1], 0.5, 1e-6);
     assert_float_equal(img_at(&color, 10000, 1)[0], 0, 1e-6);
     img_free(&color);
     assert_int_equal(img_read_mask(scratch_path("wide.png"), &mask), OK);
-    assert_true(mask.width == 10001 && mask.height == 3); /* as the photograph it is for */
+    assert_true(mask.width == 10001 && mask.height == 3); /* as the photograph that it belongs to */
     img_free(&mask);
 }
 
@@ -317,7 +318,7 @@ static void rows_too_long_to_hold_are_refused(void **state)
     img_free(&color);
 }
 
-/* Two of one pixel, the first of colour 0 of a table of two, the other of colour 1. */
+/* Two pictures of one pixel, the first of colour 0 of a table of two, the other of colour 1. */
 static void the_first_picture_of_an_animation_is_read(void **state)
 {
     (void)state;
@@ -334,7 +335,7 @@ static void the_first_picture_of_an_animation_is_read(void **state)
     assert_int_equal(facts.frames, 2);
 }
 
-/* As EXR and raw pictures are, which come as a whole. */
+/* EXR and raw pictures are decoded as a whole. */
 static void what_was_decoded_as_a_whole_is_reduced_alike(void **state)
 {
     (void)state;

@@ -24,7 +24,7 @@ static img make(int width, int height, int channels)
     return image;
 }
 
-/* Of a row of noise that is longer than what the compressor remembers, and of a picture that several threads filter. */
+/* The row of noise is longer than the compressor's window, and the picture is filtered by several threads. */
 static void rows_that_repeat_cost_next_to_nothing_in_a_png(void **state)
 {
     (void)state;
@@ -55,13 +55,13 @@ static void srgb_formula_inverts_itself(void **state)
     (void)state;
     for (int i = 0; i <= 1000; i++) {
         float x = (float)i / 1000;
-        /* powf is good to a few units in the last place, steepened at most 2.4-fold by the power */
+        /* powf is accurate to a few units in the last place, amplified at most 2.4-fold by the power */
         assert_true(fabsf(srgb_decode(srgb_encode(x)) - x) < 2e-6f);
     }
     assert_true(srgb_encode(0) == 0 && srgb_decode(0) == 0);
 }
 
-/* Those of one value, of many at once, and where each begins. */
+/* Codes of one value, of many at once, and the thresholds are tested. */
 static void codes_are_the_nearest(void **state)
 {
     (void)state;
@@ -89,7 +89,7 @@ static void codes_are_the_nearest(void **state)
     free(codes);
 }
 
-/* What libvips sees in a file: an integer of its header. */
+/* Returns an integer of a file's header, as read by libvips. */
 static int header(const char *path, const char *field)
 {
     VipsImage *image = vips_image_new_from_file(path, "n", -1, NULL);
@@ -100,7 +100,7 @@ static int header(const char *path, const char *field)
     return value;
 }
 
-/* What libpng sees: the colour space that a file of this encoding names. */
+/* Tells whether libpng finds a file of this encoding marked as sRGB. */
 static bool says_srgb(img_encoding encoding)
 {
     img image = make(5, 3, 3);
@@ -253,7 +253,7 @@ static void chart_is_drawn_from_any_curves(void **state)
     img_free(&chart);
 }
 
-/* A curve along the upper and right edge stays whole: in every row of the plot its last pixel is lit. */
+/* A curve along the upper and right edge is not covered: in every row of the plot its last pixel is set. */
 static void legend_covers_no_curve(void **state)
 {
     (void)state;

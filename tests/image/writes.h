@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What image tests share: cmocka, and what failing writes leave. */
+/* Shared by tests of writing: cmocka, and checks for what failed writes leave. */
 #ifndef MERLIN_TESTS_IMAGE_WRITES_H
 #define MERLIN_TESTS_IMAGE_WRITES_H
 
@@ -19,10 +19,10 @@
 #include "base/status.h"
 #include "scratch.h"
 
-/* after the project's headers: its macro fail() would break the declaration of ours */
+/* last, as cmocka defines a macro named fail */
 #include <cmocka.h>
 
-/* Whether a temporary file was left behind. */
+/* Tells whether a temporary file was left behind. */
 static inline bool folder_has_leftovers(void)
 {
     char **names = NULL;
@@ -35,7 +35,7 @@ static inline bool folder_has_leftovers(void)
     return found;
 }
 
-/* Lets no file grow beyond the bytes, as a full disk does; 0 lifts the limit. */
+/* Limits the size of files, which has the effect of a full disk; 0 lifts the limit. */
 static inline void limit_file_size(size_t bytes)
 {
     struct rlimit limit;

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* What tests of the model share: a program of one of its parts. */
+/* Shared by tests of the model: compiles a program of one of its parts. */
 #ifndef MERLIN_TESTS_MODEL_COMPILED_H
 #define MERLIN_TESTS_MODEL_COMPILED_H
 
 #include "model/model.h"
 
-/* In float32, for batch pictures of size × size. *params, if NULL, becomes the model's random ones. NULL on failure. */
+/* Compiles a part in float32, for `batch` pictures of size × size. If *params is NULL it becomes the model's random
+ * parameters. NULL on failure. */
 static inline nn_program *compiled(const model_config *config, model_part part, nn_purpose purpose, int batch, int size,
                                    nn_params **params)
 {

@@ -9,7 +9,7 @@
 #include "model/model.h"
 #include "optics/sh.h"
 
-/* cmocka names a macro 'fail', so that it comes behind base/status.h */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -99,7 +99,7 @@ static void model_of_both_lights_has_its_names(void **unused)
     nn_params_free(params);
 }
 
-/* White albedo's share of the direct light, by the definition of the code and by src/optics. */
+/* The albedo is white; the direct light is that of the code's definition and of src/optics. */
 static void environment_is_that_of_its_code(void **unused)
 {
     (void)unused;
@@ -136,7 +136,7 @@ static void code_is_decoded_to_what_was_encoded(void **unused)
         assert_float_equal(again[i / 3][i % 3], sh[i / 3][i % 3], 1e-6);
 }
 
-/* Parseval: the header's promise. */
+/* Parseval's theorem, as stated in the header. */
 static void squared_code_is_the_mean_square_of_white_surfaces(void **unused)
 {
     (void)unused;
@@ -164,7 +164,7 @@ static double loss_at(nn_program *p, nn_params *params)
     return (double)nn_total_loss(p);
 }
 
-/* The slope of the loss along a unit direction by central differences, with the h⁴ term of Richardson. */
+/* Returns the slope of the loss along a unit direction by central differences, with the h⁴ term of Richardson. */
 static double slope(nn_program *p, nn_params *params, nn_param *q, const float *direction, float h)
 {
     static const float steps[4] = {-2, -1, 1, 2};
@@ -183,7 +183,7 @@ static double slope(nn_program *p, nn_params *params, nn_param *q, const float *
 }
 
 /* Along the gradient the slope is its length. The total loss is near 10 and a float (rounding 1e-6): at steps of 1e-3
- * that is 1e-3 of slope; the many kinks of ReLU between two steps do the rest. */
+ * that is 1e-3 of slope; the rest is due to the many kinks of ReLU between two steps. */
 static void gradients_of_the_whole_network_match_finite_differences(void **unused)
 {
     (void)unused;

@@ -7,7 +7,7 @@
 #include "compiled.h"
 #include "model/model.h"
 
-/* cmocka names a macro 'fail', so that it comes behind base/status.h */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -144,7 +144,7 @@ static void rows_of_table_1_differ_in_the_papers_switches(void **unused)
     }
 }
 
-/* The budget of the project: 12 M parameters and 10 GMAC at 256×256 for everything together. */
+/* Asserts the project's budget: 12 M parameters and 10 GMAC at 256×256 for everything together. */
 static void keeps_the_budget(const char *name)
 {
     model_config c;
@@ -156,7 +156,7 @@ static void keeps_the_budget(const char *name)
     print_message("%s: %.2f M parameters, %.2f GMAC at 256x256\n", name, (double)cost.parameter_count / 1e6, gmac);
     assert_true(cost.parameter_count <= 12000000);
     assert_true(gmac <= 10);
-    assert_true(gmac >= 1); /* a cost of nothing would keep any budget */
+    assert_true(gmac >= 1); /* a cost of zero would satisfy any budget */
     nn_program_free(p);
     nn_params_free(params);
 }
@@ -173,7 +173,7 @@ static void default_models_keep_the_budget(void **unused)
     keeps_the_budget("merlin-env");
 }
 
-/* So that they can be added to weights that are trained already. */
+/* They can thus be added to weights that are trained already. */
 static void residual_blocks_begin_as_nothing(void **unused)
 {
     (void)unused;
@@ -182,7 +182,7 @@ static void residual_blocks_begin_as_nothing(void **unused)
     read_config("merlin-point-plain", &plain);
     read_config("merlin-point-deep", &deep);
     nn_params *a = NULL, *b = NULL;
-    /* drawn by name and seed, what both have is the same */
+    /* initial values depend on name and seed: what both have is the same */
     nn_program *p = compile(&plain, MODEL_WHOLE, NN_INFER, SIZE, &a),
                *q = compile(&deep, MODEL_WHOLE, NN_INFER, SIZE, &b);
     assert_true(nn_params_count(b) > nn_params_count(a));
@@ -202,7 +202,7 @@ static void residual_blocks_begin_as_nothing(void **unused)
     nn_params_free(a), nn_params_free(b);
 }
 
-/* The same weights through MODEL_INDIRECT give what the whole model gives for the same maps. */
+/* The same weights in MODEL_INDIRECT give the whole model's result for the same maps. */
 static void indirect_part_equals_the_whole_models(void **unused)
 {
     (void)unused;
@@ -228,7 +228,7 @@ static void indirect_part_equals_the_whole_models(void **unused)
     const float *a = nn_output_data(whole, "indirect"), *b = nn_output_data(part, "indirect");
     float largest = 0;
     for (int i = 0; i < 3 * PIXELS; i++) {
-        assert_float_equal(a[i], b[i], 1e-5); /* the same float32 arithmetic; sums may be ordered otherwise */
+        assert_float_equal(a[i], b[i], 1e-5); /* the same float32 arithmetic; sums may be in another order */
         largest = fmaxf(largest, fabsf(a[i]));
         if (mask[i / 3] == 0) assert_true(a[i] == 0);
     }
@@ -238,7 +238,7 @@ static void indirect_part_equals_the_whole_models(void **unused)
     nn_params_free(params);
 }
 
-/* The decoder for features that MODEL_MAPS gave: what the whole model makes of photograph and light at once. */
+/* The decoder on features of MODEL_MAPS gives the whole model's result for photograph and light at once. */
 static void relighting_part_equals_the_whole_models(const char *name)
 {
     enum { SIZE = 64, PIXELS = SIZE * SIZE };

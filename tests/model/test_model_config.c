@@ -5,7 +5,7 @@
 
 #include "model/model.h"
 
-/* cmocka names a macro 'fail', so that it comes behind base/status.h */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -23,7 +23,7 @@ static status parse(const char *json, model_config *c)
     return model_config_parse(json, strlen(json), "test.json", c);
 }
 
-/* good with one passage replaced, malloc'ed. */
+/* Returns `good` with one passage replaced, malloc'ed. */
 static char *with(const char *from, const char *to)
 {
     const char *at = strstr(good, from);

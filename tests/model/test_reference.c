@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* The whole network against PyTorch in double precision: tests/reference/make_reference.py wrote the vectors and says
- * what is in them.
+/* Compares the whole network with PyTorch in double precision: tests/reference/make_reference.py writes the vectors and
+ * documents them.
  *
  * Tolerances. Float32 rounds at 6e-8; some fifty layers of sums over a hundred products, and batch norms over as few as
  * eight values, leave about 1e-5 of an output and 1e-4 of a gradient. A gradient also jumps wherever rounding carries
- * one of the 10^5 rectified or clipped values across its corner, so gradients are compared as vectors. */
+ * one of the 10^5 rectified or clipped values across its kink, so that gradients are compared as vectors. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -21,7 +21,7 @@
 enum { SIZE = 64, BATCH = 2, STRIDE = 8, WIDTH = 8, NAME = 160 };
 static const float rate = 0.01f;
 
-/* ---- numbers that make_reference.py makes in the same way ---- */
+/* ---- numbers computed as in make_reference.py ---- */
 
 static uint32_t hash_name(const char *name)
 {
@@ -31,7 +31,7 @@ static uint32_t hash_name(const char *name)
     return h;
 }
 
-/* In [-1, 1). */
+/* Returns a number in [-1, 1). */
 static double hashed(uint32_t seed, size_t i)
 {
     uint32_t x = seed + (uint32_t)i * 0x9e3779b9u;
@@ -113,7 +113,7 @@ static const safetensors_tensor *stored(const safetensors_file *f, const char *k
     return safetensors_find(f, full);
 }
 
-/* |found - expected| over |expected|, as vectors */
+/* Returns |found - expected| over |expected|, as vectors. */
 static double distance(const safetensors_tensor *expected, const float *found)
 {
     float *wanted = malloc((expected->count + 1) * sizeof *wanted);
@@ -144,7 +144,7 @@ typedef struct session {
     nn_graph *training, *whole;
     nn_params *params;
     nn_program *train, *infer;
-    float *before; /* all parameters' values in turn, as they were before the step */
+    float *before; /* all parameters' values before the step, one after the other */
 } session;
 
 static model_config tiny(bool everything)
@@ -227,8 +227,8 @@ static void keep_values(session *s)
     }
 }
 
-/* Steps are kept in half precision, good to 5e-4, and are differences of float32 values near one: 6e-8 of each, which
- * is 6e-6 after division by the rate, against steps of about 1e-2 for the smallest gradients. */
+/* Steps are stored in half precision, accurate to 5e-4, and are differences of float32 values near one: 6e-8 of each,
+ * which is 6e-6 after division by the rate, against steps of about 1e-2 for the smallest gradients. */
 static void compare_steps(const session *s, double tolerance)
 {
     float *before = s->before;

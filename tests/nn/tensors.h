@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Tensors for the tests of kernels: made, filled, read as doubles, compared. */
+/* Tensors for the tests of kernels: allocating, filling, reading as doubles, comparing. */
 #ifndef MERLIN_TESTS_TENSORS_H
 #define MERLIN_TESTS_TENSORS_H
 
@@ -18,10 +18,9 @@
 #include "base/threads.h"
 #include "nn/cpu/kernels/kernels.h"
 
-#include <cmocka.h> /* last: it defines fail as a macro */
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
-/* Rounding to nearest is off by half a unit in the last place: bfloat16 has 8 significant bits, so relatively 2^-8 at
- * most. */
+/* Relative error of rounding to nearest: half a unit in the last place; bfloat16 has 8 significant bits. */
 #define BF16_ROUNDING 0x1p-8
 
 static inline size_t tensor_bytes_of(const cpu_tensor *t)
@@ -60,7 +59,7 @@ static inline cpu_tensor tensor_new(nn_type type, int n, int h, int w, int c)
     return t;
 }
 
-/* Uniform in [low, high). */
+/* Fills with numbers uniform in [low, high). */
 static inline void tensor_fill(cpu_tensor *t, uint64_t seed, float low, float high)
 {
     rng r = rng_at(seed, 0, 0);
@@ -102,7 +101,7 @@ static inline double tensor_dot(const cpu_tensor *a, const cpu_tensor *b)
     return sum;
 }
 
-/* |a - expected| <= relative |expected| + absolute, everywhere. */
+/* Asserts |a - expected| <= relative |expected| + absolute, everywhere. */
 static inline void assert_near(const char *what, const cpu_tensor *a, const cpu_tensor *expected, double relative,
                                double absolute)
 {
@@ -118,7 +117,7 @@ static inline void assert_same_bits(const char *what, const cpu_tensor *a, const
     if (memcmp(a->data, b->data, tensor_bytes_of(a)) != 0) fail_msg("%s: different bits", what);
 }
 
-/* What rounding costs a result in this type, beside float32's own 24 bits after a handful of operations. */
+/* Returns the rounding error of a result in this type, in addition to float32's after a handful of operations. */
 static inline double tensor_rounding(nn_type type)
 {
     return type == NN_FLOAT32 ? 1e-6 : BF16_ROUNDING + 1e-6;

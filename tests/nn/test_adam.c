@@ -5,7 +5,7 @@
 
 enum { WEIGHTS = 6, BIASES = 2 };
 
-/* One fully connected layer, 3 to 2: a weight and a bias. */
+/* Makes one fully connected layer, 3 to 2: a weight and a bias. */
 static nn_params *layer(void)
 {
     nn_graph *g = nn_graph_new();
@@ -57,7 +57,8 @@ static void the_first_step_is_the_learning_rate(void **state)
     nn_params_free(params);
 }
 
-/* By hand for gradients 1, then 2 (β 0.9 and 0.999): m = 0.29, v = 0.004999, m̂ = 0.29/0.19, v̂ = 0.004999/0.001999. */
+/* Computed by hand for gradients 1, then 2 (β 0.9 and 0.999): m = 0.29, v = 0.004999, m̂ = 0.29/0.19, v̂ =
+ * 0.004999/0.001999. */
 static void the_second_step_is_as_computed_by_hand(void **state)
 {
     (void)state;
@@ -72,7 +73,7 @@ static void the_second_step_is_as_computed_by_hand(void **state)
     assert_true(fabs((double)change(params, "layer.bias", before) - expected) < 2e-5 * fabs(expected));
     for (size_t i = 0; i < nn_params_count(params); i++) {
         assert_true(fabsf(nn_adam_moment(adam, i, 1)[0] - 0.29f) < 1e-6f);
-        /* 1 - 0.999 in float is off by 1.3e-5 of itself */
+        /* 1 - 0.999 in float has a relative error of 1.3e-5 */
         assert_true(fabsf(nn_adam_moment(adam, i, 2)[0] - 0.004999f) < 1e-7f);
     }
     nn_adam_free(adam);
@@ -94,7 +95,7 @@ static void the_rate_scale_of_a_parameter_counts(void **state)
     nn_params_free(params);
 }
 
-/* Eight gradients of 3 have the norm √72; clipped to 1 each is 3/√72, and the first moment a tenth of that. */
+/* Eight gradients of 3 have the norm √72; clipped to norm 1 each is 3/√72, and the first moment a tenth of that. */
 static void gradients_are_clipped_by_their_global_norm(void **state)
 {
     (void)state;
@@ -143,7 +144,7 @@ static void a_broken_gradient_changes_nothing_and_is_counted(void **state)
     nn_params_free(params);
 }
 
-/* Its second moment would be infinite, and the parameter would never move again. */
+/* Its second moment would be infinite, and the parameter would never change again. */
 static void a_gradient_whose_square_overflows_changes_nothing(void **state)
 {
     (void)state;
@@ -173,7 +174,7 @@ static void a_large_gradient_that_is_clipped_is_taken(void **state)
     nn_params_free(params);
 }
 
-/* What a checkpoint keeps is enough: values, moments and counts in a fresh optimizer go on with the same bits. */
+/* A checkpoint's values, moments and counts suffice: a new optimizer continues with the same bits. */
 static void a_restored_optimizer_goes_on_with_the_same_bits(void **state)
 {
     (void)state;
@@ -221,7 +222,7 @@ static void senseless_options_are_refused(void **state)
     nn_params_free(params);
 }
 
-/* Larger than a thread's share, to see both loops over several blocks. */
+/* The tensors are larger than a thread's share, so that both loops run over several blocks. */
 static void kernels_do_not_depend_on_the_number_of_threads(void **state)
 {
     (void)state;

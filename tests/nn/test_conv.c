@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Convolutions and batch norm against loops in double precision that follow their definitions: values, and gradients
- * by central differences of the double loops. */
+/* Compares convolutions and batch norm with loops in double precision that follow their definitions: values, and
+ * gradients by central differences of these loops. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,7 +15,7 @@
 #include "base/threads.h"
 #include "nn/nn.h"
 
-#include <cmocka.h> /* last: it defines fail as a macro */
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
 enum { BATCH = 2, HEIGHT = 8, WIDTH = 12, INPUT = 3, LIMIT = 4096 };
 
@@ -37,7 +37,7 @@ static const float *find(nn_params *params, const char *layer, const char *part)
     return p ? p->value : NULL;
 }
 
-/* The parameters may be changed by less than float can hold: one element counts with this much added. */
+/* A change of one parameter by less than float can represent: this is added to one element. */
 typedef struct nudge {
     const float *element;
     double amount;
@@ -90,7 +90,7 @@ static void reference_norm(nn_params *params, const nudge *by, const char *name,
     }
 }
 
-/* The net of these tests, as a graph and as loops: every kind of convolution, twice with a gradient to its input. */
+/* Builds the net of these tests: every kind of convolution, twice with a gradient to its input. */
 static nn_graph *build_net(void)
 {
     nn_graph *g = nn_graph_new();
@@ -149,7 +149,7 @@ static void open_fixture(fixture *f, nn_type type, nn_purpose purpose)
 {
     nn_graph *g = build_net();
     assert_int_equal(nn_params_new(g, 9, &f->params), OK);
-    for (size_t i = 0; i < nn_params_count(f->params); i++) { /* nothing at a value that hides a mistake */
+    for (size_t i = 0; i < nn_params_count(f->params); i++) { /* no value at which a mistake would be invisible */
         nn_param *p = nn_params_at(f->params, i);
         if (p->rank == 1) fill(p->value, p->count, i, strstr(p->name, "running_mean") ? -0.3f : 0.4f, 1.2f);
     }
@@ -170,7 +170,7 @@ static void close_fixture(fixture *f)
     nn_params_free(f->params);
 }
 
-/* Root mean square error over root mean square of the reference. */
+/* Returns the root mean square error over the root mean square of the reference. */
 static double relative_error(const fixture *f, const map *y)
 {
     const float *out = nn_output_data(f->program, "y");
@@ -195,7 +195,7 @@ static void check_forward(nn_type type, nn_purpose purpose, double tolerance)
 }
 
 /* float32: six layers of sums of up to 80 products, each rounded to 2^-24: 1e-5 leaves an order of magnitude. bfloat16:
- * activations and weights of nine roundings to 2^-9 each, grown by batch norms that subtract means: 3 %. */
+ * activations and weights of nine roundings to 2^-9 each, amplified by batch norms that subtract means: 3 %. */
 static void training_forward_matches_the_definition(void **state)
 {
     (void)state;
@@ -223,7 +223,7 @@ static double reference_loss(const fixture *f, const nudge *by)
     return loss / sum;
 }
 
-/* Gradients of one parameter against central differences, which are exact to 1e-8 in double. */
+/* Returns the error of one parameter's gradient against central differences, which are exact to 1e-8 in double. */
 static double gradient_error(const fixture *f, const nn_param *p)
 {
     const double step = 1e-5;
@@ -256,7 +256,7 @@ static void check_gradients(nn_type type, double tolerance)
     close_fixture(&f);
 }
 
-/* The forward's tolerances, with room for as many roundings again on the way back. */
+/* Tolerances are the forward pass's, with room for as many roundings again on the way back. */
 static void gradients_match_central_differences(void **state)
 {
     (void)state;
@@ -351,7 +351,7 @@ static nn_program *strided_program(nn_type type, nn_params **params)
     return p;
 }
 
-/* A gate's first convolution, of fewer channels than a vector has: what its threads do must not meet. */
+/* A gate's first convolution has fewer channels than a vector, so that threads could write to the same vector. */
 static void gradients_of_a_narrow_strided_convolution_are_the_same_every_time(void **state)
 {
     (void)state;

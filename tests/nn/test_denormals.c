@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Programs run with denormal numbers taken for zero. Between runs nobody may notice. */
+/* Programs run with flush-to-zero, which must not be visible between runs. */
 #include <float.h>
 #include <string.h>
 
 #include "base/parallel.h"
 #include "nn/nn.h"
 
-/* cmocka names a macro 'fail', so that it comes behind base/status.h */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

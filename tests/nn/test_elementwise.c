@@ -8,7 +8,7 @@ typedef struct operation {
     void (*forward)(const cpu_tensor *x, cpu_tensor *y);
     double (*f)(double x);
     void (*backward)(const cpu_tensor *y, const cpu_tensor *dy, cpu_tensor *dx, bool accumulate);
-    double (*slope)(double y); /* f' by f's value */
+    double (*slope)(double y); /* f' as a function of f's value */
 } operation;
 
 static double relu(double x)
@@ -115,7 +115,7 @@ static void forward_follows_the_formula(void **state)
             }
 }
 
-/* central differences of f in double: error h²|f'''|/6 < 1e-9 and 1e-16/h */
+/* Central differences of f in double have an error of h²|f'''|/6 < 1e-9 and 1e-16/h. */
 static void slopes_are_the_derivatives_of_the_formulas(void **state)
 {
     (void)state;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Setting B's environment in the rendering layer against the same sums in double, and its gradients. */
+/* Compares setting B's environment in the rendering layer with the same sums in double, and its gradients with
+ * differences. */
 #define MERLIN_REAL double
 #include "optics/sh.h"
 
@@ -31,7 +32,7 @@ static void scene_free(scene *s)
     tensor_free(&s->mask), tensor_free(&s->dy);
 }
 
-/* Channel c of pixel i, in double. */
+/* Returns channel c of pixel i, in double. */
 static double shaded(const scene *s, size_t i, int c)
 {
     real sh[9][3];
@@ -44,7 +45,7 @@ static double shaded(const scene *s, size_t i, int c)
     return tensor_get(&s->mask, i) * albedo * (c == 0 ? e.x : c == 1 ? e.y : e.z) / 3.14159265358979324;
 }
 
-/* Σ dy·y over pixels [first, end), in double. */
+/* Returns Σ dy·y over pixels [first, end), in double. */
 static double objective(const scene *s, size_t first, size_t end)
 {
     double sum = 0;
@@ -68,7 +69,8 @@ static void shading_is_albedo_times_irradiance(void **state)
     scene_free(&s);
 }
 
-/* By central differences; the objective is quadratic in each number, so only its rounding and that of float remain. */
+/* Returns a derivative by central differences; the objective is quadratic in each number, so that only rounding is
+ * left. */
 static double numeric(scene *s, cpu_tensor *t, size_t at, size_t first, size_t end)
 {
     const double h = 0x1p-8, kept = tensor_get(t, at);

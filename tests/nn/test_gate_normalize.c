@@ -58,7 +58,7 @@ static void gate_backward_is_the_product_rule(void **state)
         }
 }
 
-/* x·x: both gradients are the same tensor's, the first written and the second added, as steps ask for it. */
+/* In x·x both gradients are of the same tensor, the first written and the second added. */
 static void what_is_gated_by_itself_has_twice_the_gradient(void **state)
 {
     (void)state;
@@ -113,7 +113,7 @@ static void normalized_vectors_are_unit_and_keep_their_direction(void **state)
     }
 }
 
-/* Σ dy·x/|x| at one pixel with component c moved by h */
+/* Returns Σ dy·x/|x| at one pixel with component c changed by h. */
 static double moved(const cpu_tensor *x, const cpu_tensor *dy, size_t pixel, size_t c, double h)
 {
     size_t channels = (size_t)x->c, first = pixel * channels;

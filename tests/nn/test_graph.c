@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The builder's checks, parameters and what a program promises around a run. */
+/* The builder's checks, parameters, and the guarantees of a program beyond its results. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,14 +9,14 @@
 
 #include "nn/nn.h"
 
-#include <cmocka.h> /* last: it defines fail as a macro */
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
 static nn_node *compute_input(nn_graph *g, const char *name, int channels, int reduction)
 {
     return nn_compute(g, nn_input(g, name, channels, reduction));
 }
 
-/* Frees the graph; its error must hold these words. */
+/* Frees the graph, whose error must contain these words. */
 static void assert_refused(nn_graph *g, const char *words)
 {
     nn_params *params;
@@ -159,7 +159,7 @@ static void first_weights_depend_on_seed_and_name_alone(void **state)
     double square = 0;
     for (size_t i = 0; i < pb->count; i++)
         square += (double)(pb->value[i] * pb->value[i]);
-    /* He: 2 / (64·9); the mean square of 36864 normals strays by √(2/36864) = 0.7 %, five times that is allowed */
+    /* He: 2 / (64·9); the mean square of 36864 normals deviates by √(2/36864) = 0.7 %, five times that is allowed */
     assert_true(fabs(square / (double)pb->count * 64 * 9 / 2 - 1) < 0.037);
     nn_params_free(p);
     nn_params_free(q);
@@ -233,14 +233,14 @@ static void cost_counts_two_per_multiply_add(void **state)
     nn_cost cost = nn_program_cost(p);
     double conv1 = 2.0 * 2 * 8 * 4 * 8 * 12 * 9, conv2 = 2.0 * 2 * 4 * 2 * 12 * 8 * 9;
     assert_float_equal(cost.forward_flops, conv1 + conv2, 0.5);
-    assert_float_equal(cost.backward_flops, conv1 + 2 * conv2, 0.5); /* the image wants no gradient */
+    assert_float_equal(cost.backward_flops, conv1 + 2 * conv2, 0.5); /* the image needs no gradient */
     assert_int_equal(cost.parameter_count, 8 * 12 * 9 + 16 + 12 * 8 * 9 + 12);
     nn_program_free(p);
     nn_params_free(params);
     nn_graph_free(g);
 }
 
-/* Two heads on one body; `options.outputs` chooses. */
+/* Builds two heads on one body; `options.outputs` chooses. */
 static nn_graph *two_headed_net(void)
 {
     nn_graph *g = nn_graph_new();
@@ -294,7 +294,7 @@ static void outputs_that_nobody_wants_are_left_out(void **state)
     nn_graph_free(g);
 }
 
-/* A run of the other leaves its traces in what one saw or said. */
+/* Tells whether a run of one program changes the inputs or outputs of the other. */
 static bool shares_memory(nn_program *one, nn_program *other)
 {
     enum { SEEN = 8 * 8 * 3, SAID = 8 * 8 * 2 };
@@ -307,7 +307,7 @@ static bool shares_memory(nn_program *one, nn_program *other)
            memcmp(said, nn_output_data(one, "left"), sizeof said) != 0;
 }
 
-/* In turns, each on a picture of its own; then the one that came first goes first. */
+/* The programs run in turns, each on a picture of its own; then the one that came first is freed first. */
 static void programs_beside_each_other_share_memory(void **state)
 {
     (void)state;
@@ -329,7 +329,7 @@ static void programs_beside_each_other_share_memory(void **state)
     run_on_sines(one, 5);
     run_on_sines(alone, 5);
     assert_memory_equal(nn_output_data(one, "left"), nn_output_data(alone, "left"), VALUES * sizeof(float));
-    nn_program *larger = compile_heads(params, g, NULL, one); /* as much as it once had from the first */
+    nn_program *larger = compile_heads(params, g, NULL, one); /* needs as much as the first one has */
     assert_true(shares_memory(one, larger));
     nn_program *least = compile_heads(params, g, left, NULL), *most = compile_heads(params, g, NULL, least);
     assert_true(nn_program_cost(most).activation_bytes > nn_program_cost(least).activation_bytes);

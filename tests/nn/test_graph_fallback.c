@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* A processor without AVX-512: bfloat16 programs compute in float32. A program of its own because oneDNN fixes the
- * instruction set once. */
+/* On a processor without AVX-512 bfloat16 programs compute in float32. This test is a program of its own because oneDNN
+ * fixes the instruction set once. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -10,7 +10,7 @@
 
 #include "nn/nn.h"
 
-#include <cmocka.h> /* last: it defines fail as a macro */
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
 static void bfloat16_falls_back_to_float32(void **state)
 {

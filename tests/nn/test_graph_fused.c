@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Tests that what is computed with a convolution gives what the steps one by one give. */
+/* Operations fused into a convolution give the results of the separate steps. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,12 +9,12 @@
 
 #include "nn/nn.h"
 
-#include <cmocka.h> /* last: it defines fail as a macro */
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
 enum { CHANNELS = 16, SMALL = 8, LARGE = 64 };
 
-/* A residual block, a sum whose second convolution is met first by the builder, one of a value with itself and one
- * after ReLU. Whoever wants "a", "b", "c" and "d" too has every step by itself. */
+/* Builds a residual block, a sum whose second convolution is built first, one of a value with itself and one after
+ * ReLU. With "a", "b", "c" and "d" as outputs every step is separate. */
 static nn_graph *build_net(int kernel)
 {
     nn_graph *g = nn_graph_new();
@@ -50,7 +50,7 @@ static float *run(const nn_graph *g, nn_params *params, nn_type type, int size, 
     return y;
 }
 
-/* Root mean square difference beside the root mean square. */
+/* Returns the root mean square difference over the root mean square. */
 static double difference(const float *a, const float *b, size_t count)
 {
     double error = 0, square = 0;

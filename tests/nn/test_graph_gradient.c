@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A net of every operation: its gradients against finite differences, its runs bit for bit, its sizes and types. */
+/* A net of every operation: its gradients against finite differences, repeatability bit for bit, sizes and types. */
 #include <math.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -13,9 +13,10 @@
 #include "nn/lower.h"
 #include "nn/nn_program.h"
 
-#include <cmocka.h> /* last: it defines fail as a macro */
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
-/* Smooth everywhere but in one ReLU and in the rendering layer's clipping, and every value used in several ways. */
+/* Builds a net that is smooth except for one ReLU and the rendering layer's clipping, with every value used in several
+ * ways. */
 static nn_graph *build_net(void)
 {
     nn_graph *g = nn_graph_new();
@@ -93,7 +94,7 @@ static double loss_at(nn_program *p, nn_params *params)
     return (double)nn_total_loss(p);
 }
 
-/* The slope of the loss along a direction by central differences, with the h⁴ term of Richardson. */
+/* Returns the slope of the loss along a direction by central differences, with the h⁴ term of Richardson. */
 static double slope(nn_program *p, nn_params *params, nn_param *q, const float *direction, float h)
 {
     float *kept = malloc(q->count * sizeof *kept);
@@ -111,9 +112,9 @@ static double slope(nn_program *p, nn_params *params, nn_param *q, const float *
     return (8 * (loss[2] - loss[1]) - (loss[3] - loss[0])) / (12 * (double)h);
 }
 
-/* Along the gradient the slope is its length. The total loss is near 3 and a float (rounding 1.2e-7): steps of 5e-4
- * along unit directions leave slopes an error of about 1e-3. Larger steps cross ReLU's kinks and clipping; what these
- * still do is within 1 %. */
+/* Along the gradient the slope is its length. The total loss is near 3 and a float (rounding 1.2e-7): with steps of
+ * 5e-4 along unit directions slopes have an error of about 1e-3. Larger steps cross ReLU's kinks and clipping; their
+ * remaining effect is within 1 %. */
 static void gradients_match_finite_differences(void **state)
 {
     (void)state;
@@ -141,7 +142,7 @@ static void gradients_match_finite_differences(void **state)
     nn_params_free(params);
 }
 
-/* It has each with a gradient through it, and as a step of its own. */
+/* Each operation must pass a gradient, and be a step of its own. */
 static void the_net_has_every_operation(void **state)
 {
     (void)state;
@@ -160,7 +161,7 @@ static void the_net_has_every_operation(void **state)
     nn_graph_free(g);
 }
 
-/* Runs a step's backward with NaN in place of what it says that it does not read. */
+/* Runs a step's backward with NaN in place of what it declares not to read. */
 static void backward_without(nn_step *step, void *nan)
 {
     void *in[NN_MAX_INPUTS], *out = step->out.data;
@@ -237,7 +238,7 @@ static void training_is_reproducible_to_the_bit(void **state)
     }
 }
 
-/* How far two programs' outputs are apart, relative to the second's root mean square. */
+/* Returns the distance of two programs' outputs, relative to the second's root mean square. */
 static double distance(const float *a, const float *b, size_t count)
 {
     double error = 0, square = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Parameters from safetensors files: all or nothing. */
+/* Parameters from safetensors files: all are loaded or none. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -14,7 +14,7 @@
 #include "nn/nn.h"
 #include "nn/safetensors.h"
 
-#include <cmocka.h> /* last: it defines fail as a macro */
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
 enum { MOST = 16 };
 
@@ -64,7 +64,8 @@ static void saved_parameters_are_loaded(void **state)
     nn_params_free(b);
 }
 
-/* Writes the tensors and loads them into other parameters, which must refuse with these words and stay as they were. */
+/* Writes the tensors and loads them into other parameters, which must be refused with these words and stay unchanged.
+ */
 static void assert_refused(const safetensors_tensor *tensors, size_t count, const char *words)
 {
     nn_params *b = new_params(2), *untouched = new_params(2);
@@ -101,7 +102,7 @@ static void tensors_that_fit_are_shared_and_the_rest_stays(void **state)
     nn_params *a = new_params(1), *b = new_params(2), *before = new_params(2);
     safetensors_tensor tensors[MOST];
     size_t count = describe(a, tensors);
-    /* a stranger, one missing, one of another shape */
+    /* an unknown tensor, a missing one, one of another shape */
     tensors[0].shape[0] = 3;
     tensors[0].shape[1] = 4;
     tensors[1].name = "stranger";
@@ -121,11 +122,11 @@ static void tensors_that_fit_are_shared_and_the_rest_stays(void **state)
     nn_params_free(before);
 }
 
-/* ---- parameters that are only used ---- */
+/* ---- parameters for inference ---- */
 
 enum { SIZE = 32, CHANNELS = 16, MOST_WEIGHTS = CHANNELS * CHANNELS * 9 };
 
-/* A convolution with a batch norm to fold, one of a bias alone, and one of neither. */
+/* Builds a convolution with a batch norm to fold, one with only a bias, and one with neither. */
 static nn_graph *build_deep_net(void)
 {
     nn_graph *g = nn_graph_new();
@@ -136,7 +137,7 @@ static nn_graph *build_deep_net(void)
     return g;
 }
 
-/* Weights as half floats, every other one of them below the smallest normal half. */
+/* Writes weights as half floats, every other one of them below the smallest normal half. */
 static void write_halves(const nn_graph *g)
 {
     static uint16_t halves[3][MOST_WEIGHTS];

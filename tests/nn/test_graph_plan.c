@@ -9,7 +9,7 @@
 #include "base/rng.h"
 #include "nn/plan.h"
 
-#include <cmocka.h> /* last: it defines fail as a macro */
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
 enum { TRIALS = 200, MOST = 120, STEPS = 60 };
 

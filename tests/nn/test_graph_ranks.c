@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A batch shared by several processes has the losses, gradients and statistics of one that has all of it. */
+/* A batch shared by several processes has the losses, gradients and statistics of one process with the whole batch. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -10,7 +10,7 @@
 #include "base/rng.h"
 #include "nn/nn.h"
 
-#include <cmocka.h> /* behind ours: it has a macro named fail */
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
 #include "forked_ranks.h"
 
@@ -18,7 +18,7 @@ enum { BATCH = 4, SIZE = 32, MOST = 4096, LOSSES = 3, STEPS = 2 };
 
 static const char *const losses[LOSSES] = {"square", "gradient", "similarity"};
 
-/* What a process leaves of its steps. */
+/* The results of a process's steps. */
 typedef struct left {
     float gradient[MOST], value[MOST], loss[LOSSES + 1];
     size_t gradients, values;
@@ -26,7 +26,7 @@ typedef struct left {
 
 typedef struct runs {
     nn_type type;
-    left *of; /* a rank's each */
+    left *of; /* one for each rank */
 } runs;
 
 static nn_graph *build(void)
@@ -43,7 +43,7 @@ static nn_graph *build(void)
     return g;
 }
 
-/* Pictures `first` on of the batch; their masks are of very different sizes. */
+/* Fills in pictures of the batch, beginning at `first`; their masks are of very different sizes. */
 static void fill(nn_program *p, int first, int count)
 {
     float *image = nn_input_data(p, "image"), *mask = nn_input_data(p, "mask");
@@ -123,7 +123,7 @@ static void assert_close(const float *a, const float *b, size_t count, float sha
             fail_msg("value %zu: %g for %g, more than %g apart", i, (double)a[i], (double)b[i], (double)bound);
 }
 
-/* Rounding alone lies between them: of floats a millionth, in sums of thousands and two steps some more; of bfloat16 a
+/* The difference is rounding alone: of floats a millionth, in sums of thousands and two steps some more; of bfloat16 a
  * 256th. */
 static void compare(int count, nn_type type, float share)
 {

@@ -8,7 +8,7 @@ typedef struct loss {
     void (*backward)(const cpu_tensor *prediction, const cpu_tensor *target, const cpu_tensor *mask, double mask_sum,
                      float scale, cpu_tensor *dprediction, bool accumulate);
     double (*definition)(const cpu_tensor *prediction, const cpu_tensor *target, const cpu_tensor *mask);
-    double rounding, step; /* of the loss in float, relative; of central differences */
+    double rounding, step; /* rounding: of the loss in float, relative; step: of central differences */
 } loss;
 
 static double mask_total(const cpu_tensor *mask)
@@ -48,7 +48,7 @@ static double masked_gradient_l2(const cpu_tensor *p, const cpu_tensor *t, const
     return sum / mask_total(m);
 }
 
-/* The five moments of the 11 × 11 window around a pixel, black beyond the frame. */
+/* Computes the dissimilarity from the five moments of the 11 × 11 window around a pixel, black beyond the frame. */
 static double dissimilarity_at(const cpu_tensor *p, const cpu_tensor *t, const cpu_tensor *m, size_t n, int row,
                                int column, size_t channel)
 {
@@ -97,9 +97,8 @@ static void dssim_backward(const cpu_tensor *p, const cpu_tensor *t, const cpu_t
     assert_int_equal(cpu_masked_dssim_backward(p, t, m, mask_sum, scale, dp, accumulate), OK);
 }
 
-/* Differences are rounded to float before they are squared; moments before they are subtracted from each other. The
- * first two are quadratic, so that a wide step of central differences is exact but for the float grid; the third is
- * not. */
+/* Losses. Differences are rounded to float before they are squared, moments before they are subtracted. The first two
+ * are quadratic, so that a wide step of central differences is exact except for the float grid; the third is not. */
 static const loss losses[] = {
     {"masked_l2", cpu_masked_l2, cpu_masked_l2_backward, masked_l2, 1e-6, 1.0 / 1024},
     {"masked_gradient_l2", cpu_masked_gradient_l2, cpu_masked_gradient_l2_backward, masked_gradient_l2, 1e-6,

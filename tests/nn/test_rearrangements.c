@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The linear operations: each against its definition written per element, and against its own adjoint. */
+/* The linear operations: each against its definition per element, and against its own adjoint. */
 #include "tensors.h"
 
 typedef struct shapes {
@@ -9,7 +9,7 @@ typedef struct shapes {
 typedef struct operation {
     const char *name;
     shapes (*shapes)(const int *base);
-    double (*definition)(const cpu_tensor *x, int n, int row, int column, int c); /* y there */
+    double (*definition)(const cpu_tensor *x, int n, int row, int column, int c); /* the value of y there */
     void (*forward)(const cpu_tensor *x, cpu_tensor *y, bool accumulate);
     void (*adjoint)(const cpu_tensor *dy, cpu_tensor *dx, bool accumulate);
     bool forward_accumulates;
@@ -26,7 +26,7 @@ static double clamped(const cpu_tensor *x, int n, int row, int column, int c)
     return tensor_at(x, n, y, i, c);
 }
 
-/* Half-pixel centres: output pixel i lies at (i + 0.5)/2 - 0.5 of the input. */
+/* Interpolates with half-pixel centres: output pixel i is at (i + 0.5)/2 - 0.5 of the input. */
 static double bilinear(const cpu_tensor *x, int n, int row, int column, int c)
 {
     double v = (row + 0.5) / 2 - 0.5, u = (column + 0.5) / 2 - 0.5;
@@ -143,7 +143,7 @@ static const operation operations[] = {
 };
 enum { OPERATIONS = sizeof operations / sizeof *operations };
 
-/* One pixel, odd sizes, rows longer than a tile, channels wider than a chunk, enough for threads. */
+/* Shapes: one pixel, odd sizes, rows longer than a tile, channels wider than a chunk, enough for threads. */
 static const int bases[][4] = {{1, 1, 1, 1}, {2, 3, 5, 7}, {1, 2, 300, 4}, {1, 3, 2, 1500}, {2, 17, 19, 32}};
 enum { BASES = sizeof bases / sizeof *bases };
 
@@ -182,7 +182,7 @@ static void forward_follows_the_definition(void **state)
         }
 }
 
-/* <A x, y> = <x, Aᵀ y>; each sum's rounding is below 1e-6 of the vectors' lengths */
+/* <A x, y> = <x, Aᵀ y>; each sum's rounding is below 1e-6 of the vectors' lengths. */
 static void backward_is_the_adjoint(void **state)
 {
     (void)state;
@@ -210,7 +210,7 @@ static void check_accumulation(const char *name, runner *run, const int *from, c
     run(&x, &y, true);
     for (size_t i = 0; i < cpu_count(&y); i++)
         tensor_set(&expected, i, tensor_get(&before, i) + tensor_get(&alone, i));
-    /* bfloat16: `alone` was rounded on its way to memory, the sum again; |alone| is 16 at most (tile's apart) */
+    /* bfloat16: `alone` was rounded when it was stored, the sum again; |alone| is 16 at most (except tile's) */
     double largest = 1;
     for (size_t i = 0; i < cpu_count(&y); i++)
         largest = fmax(largest, fabs(tensor_get(&alone, i)));
@@ -233,7 +233,7 @@ static void accumulation_adds_to_what_is_there(void **state)
         }
 }
 
-/* On values that bfloat16 holds, bfloat16 differs from float32 by the rounding of the result alone. */
+/* On values that bfloat16 represents, bfloat16 differs from float32 by the rounding of the result alone. */
 static void bfloat16_backward_is_float32_rounded_once(void **state)
 {
     (void)state;
@@ -269,7 +269,7 @@ static void results_do_not_depend_on_the_number_of_threads(void **state)
     threads_use_here(before);
 }
 
-/* By hand: a row 0 4 8 becomes 0 1 3 5 7 8. */
+/* Computed by hand: a row 0 4 8 becomes 0 1 3 5 7 8. */
 static void bilinear_weights_are_three_quarters_and_one(void **state)
 {
     (void)state;

@@ -12,7 +12,7 @@ static const float fov = 60, power = 5.95f;
 typedef struct scene {
     cpu_render_tensors maps;
     cpu_tensor mask, light, dy;
-    cpu_tensor lens; /* or empty: fov's for all */
+    cpu_tensor lens; /* or empty: that of fov for all */
 } scene;
 
 static cpu_render_view view_of(const scene *s)
@@ -38,7 +38,7 @@ static void make_normals_unit(cpu_tensor *normal)
     }
 }
 
-/* A disc with a soft edge and a hole, so that rows have spans, and pixels outside lie within spans. */
+/* Draws a disc with a soft edge and a hole, so that rows have spans, and pixels outside are inside spans. */
 static void draw_mask(cpu_tensor *mask)
 {
     for (int i = 0; i < PIXELS; i++) {
@@ -64,7 +64,7 @@ static scene scene_new(void)
     return s;
 }
 
-/* A long lens away from its axis, and a short one on it. */
+/* Makes a scene with a long lens off its axis, and a short one on it. */
 static scene scene_of_other_lenses(void)
 {
     scene s = scene_new();
@@ -86,7 +86,7 @@ static vec3 read3(const cpu_tensor *t, size_t i)
     return vec3_make(tensor_get(t, 3 * i), tensor_get(t, 3 * i + 1), tensor_get(t, 3 * i + 2));
 }
 
-/* The camera of a pixel's sample; relief is what a unit of depth is in distance. */
+/* Returns the camera of a pixel's sample; relief is the distance of a unit of depth. */
 static camera camera_at(const scene *s, size_t i, double *relief)
 {
     camera c = {.width = WIDTH, .height = HEIGHT, .fov = (double)fov};
@@ -141,7 +141,7 @@ static void check_rendering(scene s)
     const cpu_render_view view = view_of(&s);
     cpu_tensor y = map_of(3, 9, -1, 1), expected = expected_rendering(&s);
     cpu_render(&s.maps, &view, &y);
-    /* float: the highlight's base, 1 - (n·h)² + ..., keeps about four digits at the smallest roughness, 0.1 */
+    /* float: the highlight's base, 1 - (n·h)² + ..., has about four correct digits at the smallest roughness, 0.1 */
     assert_near("rendering", &y, &expected, 2e-4, 1e-5);
     double brightest = 0;
     for (size_t i = 0; i < cpu_count(&y); i++)
@@ -163,7 +163,7 @@ static void rendering_through_any_lens_is_the_physics_of_optics(void **state)
     check_rendering(scene_of_other_lenses());
 }
 
-/* d(Σ dy·y at pixel i)/d(parameter), by central differences; the parameter is a number inside `in`. */
+/* Returns d(Σ dy·y at pixel i)/d(parameter), by central differences; the parameter is a number inside `in`. */
 static double numeric(const scene *s, size_t i, shade_input *in, double *parameter, double h)
 {
     double at = *parameter, sum = 0;
@@ -178,7 +178,8 @@ static double numeric(const scene *s, size_t i, shade_input *in, double *paramet
     return sum;
 }
 
-/* Where a clip or a clamp is within h of its corner, a central difference is the derivative of neither side. */
+/* Tells whether a clip or a clamp is within h of its kink, where a central difference is the derivative of neither
+ * side. */
 static bool near_corner(const shade_input *in)
 {
     vec3 r = shade_point(in);
@@ -210,7 +211,7 @@ static void check_gradients(scene s)
         double *albedo[] = {&in.albedo.x, &in.albedo.y, &in.albedo.z};
         double *normal[] = {&in.normal.x, &in.normal.y, &in.normal.z};
         for (size_t c = 0; c < 3; c++) {
-            /* albedo and roughness are half as steep in [-1, 1] */
+            /* the slope by albedo and roughness is halved in [-1, 1] */
             expect(&d.albedo, 3 * i + c, 0.5 * numeric(&s, i, &in, albedo[c], 1e-5), &worst);
             expect(&d.normal, 3 * i + c, numeric(&s, i, &in, normal[c], 1e-5), &worst);
         }
@@ -220,7 +221,7 @@ static void check_gradients(scene s)
         expect(&d.depth, i, relief * numeric(&s, i, &in, &in.depth, 1e-5), &worst);
     }
     assert_true(checked > 500);
-    /* as in the rendering itself: float keeps about four digits in sharp highlights, and slopes one less */
+    /* as in the rendering itself: float has about four correct digits in sharp highlights, and slopes one less */
     if (worst > 2e-3) fail_msg("worst relative error %.3g", worst);
     tensor_free(&d.albedo), tensor_free(&d.normal), tensor_free(&d.roughness), tensor_free(&d.depth);
     scene_free(&s);

@@ -94,7 +94,7 @@ static char *sample_bytes(size_t *size)
     return bytes;
 }
 
-/* What a training run writes of a large model: one tensor of 1.2 GB, which take no room on the disk. */
+/* A large model's training state has one tensor of 1.2 GB, written as a sparse file. */
 static void a_file_of_more_than_a_gigabyte_is_read(void **state)
 {
     (void)state;
@@ -120,7 +120,7 @@ static void truncated_weights_are_refused(void **state)
     size_t size;
     char *bytes = sample_bytes(&size);
     for (size_t n = 0; n < size; n++) {
-        /* its own allocation, so that reading past the end shows under the sanitizer */
+        /* a separate allocation, so that the sanitizer sees reads past the end */
         char *part = malloc(n + 1);
         assert_non_null(part);
         memcpy(part, bytes, n);
@@ -164,7 +164,7 @@ static void other_files_are_called_what_they_are(void **state)
     assert_int_equal(safetensors_open("/nowhere/w.safetensors", &f), MERLIN_BAD_INPUT);
 }
 
-/* A file with this header and so many bytes of zeros behind it. */
+/* Parses a file with this header followed by so many bytes of zeros. */
 static status parse_text(const char *header, size_t data)
 {
     size_t length = strlen(header), size = 8 + length + data;
@@ -209,7 +209,7 @@ static void malformed_headers_are_refused(void **state)
         {"{}\n{}", 0},
         {"{\"a\":1}", 0},
         {"{\"a\\n\":1}", 0}, /* would break a message into two lines */
-        {"{}", 1},           /* a rest */
+        {"{}", 1},           /* a remainder */
         {"{\"__metadata__\":[]}", 0},
         {"{\"__metadata__\":{\"a\":1}}", 0},
         {"{\"__metadata__\":{\"a\":\"1\",\"a\":\"2\"}}", 0},
@@ -230,7 +230,7 @@ static void malformed_headers_are_refused(void **state)
         {"{\"a\":{\"dtype\":\"F32\",\"shape\":[1],\"data_offsets\":[-4,0]}}", 4},
         {"{\"a\":{\"dtype\":\"F32\",\"shape\":[1],\"data_offsets\":[0,1e300]}}", 4},
         {"{\"a\":{\"dtype\":\"F32\",\"shape\":[1],\"data_offsets\":[0,4]}}", 3}, /* truncated */
-        {"{\"a\":{\"dtype\":\"F32\",\"shape\":[1],\"data_offsets\":[4,8]}}", 8}, /* a hole */
+        {"{\"a\":{\"dtype\":\"F32\",\"shape\":[1],\"data_offsets\":[4,8]}}", 8}, /* a gap */
         /* 2^32 · 2^32 · 4 wraps to zero bytes */
         {"{\"a\":{\"dtype\":\"F32\",\"shape\":[4294967296,4294967296],\"data_offsets\":[0,0]}}", 0},
         {"{\"a\":{\"dtype\":\"F32\",\"shape\":[4611686018427387904],\"data_offsets\":[0,0]}}", 0},

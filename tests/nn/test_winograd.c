@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Tests Winograd's filtering against convolutions by their definition in double precision, and steps that a program
- * computes by it against differences. */
+/* Winograd's filtering against convolutions by their definition in double precision, and steps of a program computed by
+ * it against differences. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,7 +15,7 @@
 #include "nn/cpu/winograd/winograd.h"
 #include "nn/nn.h"
 
-#include <cmocka.h> /* last: it defines fail as a macro */
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
 static float *new_floats(size_t count, uint64_t stream)
 {
@@ -27,7 +27,7 @@ static float *new_floats(size_t count, uint64_t stream)
     return x;
 }
 
-/* The room of `count` floats with the numbers of a type in it, to which the floats are rounded. */
+/* Returns the room of `count` floats with the numbers in a type, to which the floats are rounded. */
 static void *new_numbers(float *x, size_t count, nn_type type)
 {
     float *room = malloc(count * sizeof *room);
@@ -48,7 +48,7 @@ static void numbers_to_floats(const void *numbers, size_t count, nn_type type, f
         to[i] = type == NN_FLOAT32 ? ((const float *)numbers)[i] : bf16_to_float(((const uint16_t *)numbers)[i]);
 }
 
-/* x_in, y_in and dy_in are in the convolution's types, with x, y and dy for values. */
+/* A convolution's data. x_in, y_in and dy_in are in its types, with x, y and dy as values. */
 typedef struct fixture {
     winograd g;
     size_t inputs, outputs, taps;
@@ -94,7 +94,8 @@ static double weight_at(const fixture *f, int o, int i, int tap)
     return (double)f->weight[(o * f->g.in + i) * 9 + tap];
 }
 
-/* For every pair of pixels that a tap joins, which is what a convolution and both its gradients are sums over. */
+/* A function called for every pair of pixels that a tap joins: a convolution and both its gradients are sums over
+ * these. */
 typedef void (*visit)(const fixture *f, size_t from, size_t to, int tap, double *sums);
 
 static void for_all_pairs(const fixture *f, visit what, double *sums)
@@ -134,8 +135,8 @@ static void add_weight_gradient(const fixture *f, size_t from, size_t to, int ta
                 (double)f->dy[to * (size_t)f->g.out + (size_t)o] * (double)f->x[from * (size_t)f->g.in + (size_t)i];
 }
 
-/* Root mean square error beside the root mean square. Sums of thousands of products of 24 bits, which the filtering
- * makes some ten times less exact: 1e-5; rounded to the 8 bits of bfloat16, 2^-9 at most. */
+/* Asserts a root mean square error relative to the root mean square. Sums of thousands of products of 24 bits, which
+ * filtering makes some ten times less exact: 1e-5; rounded to the 8 bits of bfloat16, 2^-9 at most. */
 static void assert_close(const void *numbers, const double *expected, size_t count, nn_type type)
 {
     double error = 0, square = 0, bound = type == NN_FLOAT32 ? 1e-5 : 0.002;
@@ -157,7 +158,7 @@ static double *new_sums(size_t count)
     return sums;
 }
 
-/* Whole tiles and not, fewer than a thread's share, more channels in than out and the other way round. */
+/* Shapes with whole tiles and not, fewer than a thread's share, more channels in than out and the other way round. */
 static const winograd shapes[] = {
     {2, 16, 24, 16, 32, 2, NN_FLOAT32, NN_FLOAT32}, {3, 7, 10, 48, 16, 3, NN_FLOAT32, NN_FLOAT32},
     {1, 1, 1, 16, 16, 2, NN_FLOAT32, NN_FLOAT32},   {1, 13, 5, 160, 16, 2, NN_FLOAT32, NN_FLOAT32},
@@ -181,7 +182,7 @@ static void convolution_matches_the_definition(void **state)
     }
 }
 
-/* The picture beside has the input's type, which need not be the output's. */
+/* The picture that is added has the input's type, which may differ from the output's. */
 static void bias_a_picture_old_values_and_relu_come_after_the_sums(void **state)
 {
     (void)state;
@@ -204,7 +205,7 @@ static void bias_a_picture_old_values_and_relu_come_after_the_sums(void **state)
     }
 }
 
-/* As float_to_bf16 has them: ties to even, infinity stays, NaN is NaN. */
+/* Rounding is float_to_bf16's: ties to even, infinity stays, NaN is NaN. */
 static void bfloat16_is_rounded_as_everywhere(void **state)
 {
     (void)state;
@@ -276,7 +277,7 @@ static void threads_change_no_bit(void **state)
 
 enum { SIZE = 48, BATCH = 2, CHANNELS = 16 };
 
-/* A stem whose output two convolutions use, with ReLU and bias, with batch norm and without. */
+/* Builds a stem whose output two convolutions use, with ReLU and bias, with batch norm and without. */
 static nn_graph *build_net(void)
 {
     nn_graph *g = nn_graph_new();
@@ -337,7 +338,7 @@ static void gradients_of_a_program_match_differences(void **state)
         double square = 0;
         for (size_t i = 0; i < w->count; i++)
             square += (double)w->gradient[i] * (double)w->gradient[i];
-        double step = 0.02 / sqrt(square); /* far enough for a float32 loss, near enough for ReLU's corners */
+        double step = 0.02 / sqrt(square); /* far enough for a float32 loss, near enough for ReLU's kinks */
         double slope = (loss_at(params, p, w, was, step) - loss_at(params, p, w, was, -step)) / (2 * step);
         if (!(fabs(slope / square - 1) < 1e-3)) fail_msg("%s: %g, expected %g", names[k], square, slope);
         memcpy(w->value, was, w->count * sizeof *was);
@@ -348,7 +349,7 @@ static void gradients_of_a_program_match_differences(void **state)
     nn_params_free(params);
 }
 
-/* Activations of 8 bits leave gradients that are right to a few hundredths. */
+/* With activations of 8 bits gradients are right to a few hundredths. */
 static void gradients_in_bfloat16_are_nearly_those_in_float32(void **state)
 {
     (void)state;
@@ -376,8 +377,8 @@ static void gradients_in_bfloat16_are_nearly_those_in_float32(void **state)
     nn_params_free(params[1]);
 }
 
-/* What is far from a picture's border does not depend on its size. The smaller one has too few tiles to be filtered:
- * oneDNN computes it, batch norm folded into its weights as well. */
+/* Far from a picture's border results do not depend on its size. The smaller picture has too few tiles for filtering:
+ * oneDNN computes it, with batch norm folded into its weights as well. */
 static void a_program_agrees_with_one_of_another_size(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The specular lobe under smooth surroundings, against quadrature. */
+/* The specular lobe in smooth environments, against quadrature. */
 #define MERLIN_REAL double
 #include "optics/ambient.h"
 
@@ -12,7 +12,7 @@
 
 enum { STEPS = 64 };
 
-/* Σ over half vectors drawn by D of f (n·l) radiance / density. */
+/* Returns Σ over half vectors sampled by D of f (n·l) radiance / density. */
 static vec3 reflected(double roughness, vec3 n, vec3 v, vec3 (*radiance)(vec3))
 {
     vec3 sum = {0, 0, 0};
@@ -34,7 +34,7 @@ static vec3 white(vec3 d)
     return vec3_make(1, 1, 1);
 }
 
-/* A smooth sky that nine coefficients hold whole. */
+/* A smooth sky that nine coefficients represent exactly. */
 static real sky_sh[9][3];
 
 static vec3 sky(vec3 d)
@@ -61,7 +61,7 @@ static void furnace_share_of_the_lobe_is_the_fit(void **state)
     for (double r = 0.05; r <= 1; r += 0.095)
         for (double c = 0.05; c <= 1; c += 0.095) {
             double e = ambient_specular_albedo(r, c) - reflected(r, n, view_at(c), white).x;
-            assert_true(fabs(e) < 0.016); /* what the header promises, and what 64² samples leave out */
+            assert_true(fabs(e) < 0.016); /* the header's bound, and the error of 64² samples */
             square += e * e;
             count++;
         }

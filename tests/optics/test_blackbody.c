@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-/* sRGB codes of black bodies by the CIE 1931 observer, as published tables list them to a few codes. */
+/* The sRGB codes of black bodies by the CIE 1931 observer are listed in published tables to a few codes. */
 static void temperatures_have_their_colours(void **state)
 {
     (void)state;

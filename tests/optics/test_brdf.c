@@ -25,7 +25,7 @@ static void assert_close(double value, double expected, double relative)
         fail_msg("%.12g is not %.12g within %g", value, expected, relative);
 }
 
-/* f for normal (0, 0, 1), worked out from the printed formula by a separate Python script. */
+/* The values of f for normal (0, 0, 1) are from the printed formula by a separate Python script. */
 static void brdf_matches_ten_points_computed_by_hand(void **state)
 {
     (void)state;
@@ -105,7 +105,8 @@ static void brdf_is_reciprocal(void **state)
     }
 }
 
-/* ∫ f_s (n·l) dl, substituting l by half vectors spread as the lobe is, so that the sharpest one is integrated well. */
+/* Returns ∫ f_s (n·l) dl, with l substituted by half vectors distributed as the lobe is, so that the sharpest one is
+ * integrated well. */
 static double specular_albedo(double roughness, double cosine)
 {
     enum { STEPS = 128 };
@@ -135,7 +136,7 @@ static void specular_lobe_never_reflects_more_than_a_white_furnace_sends(void **
     assert_close(specular_albedo(0.03, 1), 0.05 + 0.95 * exp2(-5.55473 - 6.98316), 0.01);
 }
 
-/* The header says so: a white diffuse part is not dimmed by the lobe. */
+/* The header documents it: a white diffuse part is not reduced by the lobe. */
 static void white_diffuse_with_the_lobe_exceeds_one(void **state)
 {
     (void)state;
@@ -174,7 +175,7 @@ static void smoother_is_brighter_in_the_mirror_direction_and_darker_beside_it(vo
     assert_close(brdf_distribution(brdf_alpha2(1), 0.3), 0.318309886184, 1e-9);
 }
 
-/* E[1] over the density's own samples, and E[f cosθ / pdf] against quadrature: the sampler draws what pdf says. */
+/* Compares E[1] over the density's own samples, and E[f cosθ / pdf], with quadrature: samples have the density pdf. */
 static void sampling_agrees_with_its_density(void **state)
 {
     (void)state;

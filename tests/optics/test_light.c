@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Shading and its hand-written derivative, in double so that finite differences are sharp; and camera and target
+/* Shading and its hand-written derivative, in double so that finite differences are precise; and camera and target
  * lights. */
 #define MERLIN_REAL double
 #include "optics/light.h"
@@ -19,7 +19,7 @@ static double uniform(rng *r, double low, double high)
     return low + (high - low) * rng_uniform(r);
 }
 
-/* A pixel whose cosines stay clear of their clamps, so that the function is smooth around it. */
+/* Returns a pixel whose cosines are away from their clamps, so that the function is smooth around it. */
 static shade_input random_pixel(rng *r, bool flash)
 {
     for (;;) {
@@ -148,8 +148,8 @@ static void a_slanted_cameras_points_return_to_their_pixels(void **state)
     }
 }
 
-/* A picture's angles do not depend on how it came out of the lens's plane: the lines of sight of two pixels of a cut
- * lie as far apart as those of the same places in the whole. */
+/* Angles do not depend on the crop: the lines of sight of two pixels of a crop enclose the same angle as those of the
+ * same points in the whole picture. */
 static void a_cut_sees_along_the_same_lines_as_the_whole_picture(void **state)
 {
     (void)state;

@@ -13,8 +13,8 @@
 enum { POLAR = 400, AROUND = 800 };
 static const double pi = 3.14159265358979324;
 
-/* Midpoint rule in cosθ and φ. Its error is h²/24 (f'(1) − f'(−1)) · 2π with h = 2/POLAR: 3e-5 for the steepest
- * product, that of L20 with itself. */
+/* Returns the directions of the midpoint rule in cosθ and φ. Its error is h²/24 (f'(1) − f'(−1)) · 2π with h = 2/POLAR:
+ * 3e-5 for the steepest product, that of L20 with itself. */
 static vec3 direction(int i, int j)
 {
     double z = 1 - 2 * (i + 0.5) / POLAR, phi = 2 * pi * (j + 0.5) / AROUND, s = sqrt(1 - z * z);
@@ -39,7 +39,7 @@ static void basis_is_orthonormal(void **state)
             assert_true(fabs(product[a][b] - (a == b)) < 4e-5);
 }
 
-/* A sky of bands 0 to 2 only, so that nine coefficients hold it whole. */
+/* Returns a sky of bands 0 to 2 only, which nine coefficients represent exactly. */
 static vec3 sky(vec3 d)
 {
     return vec3_make(1 + 0.5 * d.y, 0.7 + 0.3 * d.x * d.z, 0.4 + 0.2 * d.z * d.z - 0.1 * d.x);
@@ -91,7 +91,7 @@ static void gradient_is_that_of_central_differences(void **state)
     for (int k = 0; k < 3; k++) {
         double up = vec3_dot(weight, sh_irradiance(c, vec3_fma(n, h, axes[k])));
         double down = vec3_dot(weight, sh_irradiance(c, vec3_fma(n, -h, axes[k])));
-        /* irradiance is a quadratic in n, for which central differences are exact but for rounding, 1e-16 / 1e-4 */
+        /* irradiance is a quadratic in n, for which central differences are exact except for rounding, 1e-16 / 1e-4 */
         assert_true(fabs(found[k] - (up - down) / (2 * h)) < 1e-10);
     }
 }
@@ -99,7 +99,7 @@ static void gradient_is_that_of_central_differences(void **state)
 static void turned_environment_in_a_turned_direction_is_the_environment(void **state)
 {
     (void)state;
-    /* a rotation about an axis of no symmetry, and the same with a reflection */
+    /* a rotation about an axis without symmetry, and the same with a reflection */
     const vec3 x = vec3_normalize(vec3_make(0.6, -0.5, 0.3)), y = vec3_normalize(vec3_cross(x, vec3_make(0, 0, 1)));
     const vec3 z = vec3_cross(x, y);
     for (int mirrored = 0; mirrored < 2; mirrored++) {

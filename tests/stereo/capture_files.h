@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "base/file.h"
-/* after the project's headers, for it brings cmocka */
+/* last, as cmocka defines a macro named fail */
 #include "flat.h"
 
 static inline void write_text(const char *name, const char *text)

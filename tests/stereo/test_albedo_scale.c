@@ -6,7 +6,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 
-#include <cmocka.h> /* behind ours: it has a macro named fail */
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
 /* Even colour on the upper half, which is the object; brighter below. */
 static void make(int side, const float colour[3], img *albedo, img *mask)

@@ -11,7 +11,7 @@
 #include "base/rng.h"
 #include "stereo/algebra/dense.h"
 
-#include <cmocka.h> /* behind ours: it has a macro named fail */
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
 static const int sizes[] = {1, 2, 3, 4, 7, 24, 97, 200};
 enum { SIZES = sizeof sizes / sizeof *sizes, LARGEST = 200 };

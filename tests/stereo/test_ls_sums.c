@@ -7,7 +7,7 @@
 
 #include "base/status.h"
 
-#include <cmocka.h> /* behind ours: it has a macro named fail */
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
 #include "base/rng.h"
 #include "stereo/methods/ls_sums.h"

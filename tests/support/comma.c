@@ -13,7 +13,7 @@ bool comma_begin(const char *folder)
     if (!f) return false;
     fputs("LC_NUMERIC\ndecimal_point \",\"\nthousands_sep \"\"\ngrouping -1\nEND LC_NUMERIC\n", f);
     fclose(f);
-    /* it complains of the categories that are not there, and fails, but writes the one that is */
+    /* it reports the missing categories and fails, but writes the one that is there */
     snprintf(command, sizeof command, "localedef -c -i '%s' '%s/comma' >'%s.log' 2>&1", source, folder, source);
     if (system(command) < 0) return false;
     setenv("LOCPATH", folder, 1);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* A locale with decimal commas, as half of Europe has.
+/* A locale with decimal commas, as in half of Europe.
  *
- *     if (!comma_begin(scratch)) return;     says so and leaves out what follows
+ *     if (!comma_begin(scratch)) return;     prints that the rest is skipped
  *     ...
  *     comma_end();
  */
@@ -10,7 +10,7 @@
 
 #include <stdbool.h>
 
-/* The program's locale is then one that is made in this folder, because a machine may have none. */
+/* Sets the program's locale to one that is made in this folder, because a machine may have none. */
 bool comma_begin(const char *folder);
 void comma_end(void);
 

@@ -10,7 +10,7 @@
 enum { BYTE = 1, ASCII = 2, SHORT = 3, LONG = 4, RATIONAL = 5, SIGNED_RATIONAL = 10 };
 enum { BLACK = 512, WHITE = 16000, ENTRIES = 32, ROOM = 8192 };
 
-/* A TIFF in the making: folders of entries, then their values, then pixels. */
+/* A TIFF being built: directories of entries, then their values, then pixels. */
 typedef struct tiff {
     uint8_t *data;
     uint32_t size, entries_at;
@@ -30,7 +30,7 @@ static void open_folder(tiff *t)
     t->size += 2 + 12 * ENTRIES + 4;
 }
 
-/* values: as many numbers as stand in the file, two for a fraction. */
+/* Adds an entry; values: as many numbers as there are in the file, two for a fraction. */
 static void add(tiff *t, uint32_t tag, uint32_t type, uint32_t count, const uint32_t *values)
 {
     const int bytes = type == SHORT ? 2 : type == BYTE || type == ASCII ? 1 : 4;
@@ -127,7 +127,7 @@ static void put_codes(tiff *t, const dng *d)
         }
 }
 
-/* So many bits of a float that has them exactly, but for the last. */
+/* Returns a float, which must be representable, as a code of so many bits. */
 static uint32_t float_code(float value, int bits)
 {
     if (value == 0) return 0;
@@ -137,7 +137,7 @@ static uint32_t float_code(float value, int bits)
     return (uint32_t)(exponent - 1 + bias) << fraction | (uint32_t)((2 * whole - 1) * (float)(1 << fraction));
 }
 
-/* A row of floats as bytes, which may then be told as differences to the pixel before, all of one weight together. */
+/* Returns a row of floats as bytes, possibly as differences to the previous pixel, grouped by significance. */
 static void float_row(const dng *d, int y, uint8_t *row)
 {
     const int channels = d->linear ? 3 : 1, bytes = d->floats / 8, count = d->width * channels;
@@ -152,7 +152,7 @@ static void float_row(const dng *d, int y, uint8_t *row)
         row[i] = (uint8_t)(row[i] - row[i - channels]);
 }
 
-/* In zlib's form, one block a row of bytes as they are; the check at the end is RFC 1950's. */
+/* Appends rows in zlib's format, one stored block a row, with RFC 1950's checksum at the end. */
 static void put_deflated_rows(tiff *t, const dng *d, int first, int end)
 {
     const uint32_t bytes = (uint32_t)(d->width * (d->linear ? 3 : 1) * d->floats / 8);
@@ -176,7 +176,7 @@ static void put_deflated_rows(tiff *t, const dng *d, int first, int end)
     t->size += (t->size - start) & 1;
 }
 
-/* In strips of 24 rows, the last of them perhaps shorter. */
+/* Appends strips of 24 rows, the last possibly shorter. */
 static void put_floats(tiff *t, const dng *d)
 {
     enum { ROWS = 24, MOST = 16 };
@@ -185,7 +185,7 @@ static void put_floats(tiff *t, const dng *d)
     const uint32_t channels = d->linear ? 3 : 1;
     uint32_t places[MOST], sizes[MOST], count = 0;
     uint32_t folder = t->entries_at, behind = t->size;
-    t->size += 512; /* for the values of what is added below */
+    t->size += 512; /* for the values of the entries added below */
     for (int y = 0; y < d->height; y += ROWS, count++) {
         places[count] = t->size;
         put_deflated_rows(t, d, y, y + ROWS < d->height ? y + ROWS : d->height);

@@ -11,10 +11,10 @@
 #include "image/write/write.h"
 #include "scratch.h"
 
-/* after the project's headers: its macro fail() would break the declaration of ours */
+/* last, as cmocka defines a macro named fail */
 #include <cmocka.h>
 
-/* A PNG in the test's folder; returns its path. */
+/* Writes a PNG in the test's folder; returns its path. */
 static inline const char *write_flat(const char *name, int width, int height, int channels, float value,
                                      img_encoding encoding)
 {

@@ -9,16 +9,16 @@
 #ifndef MERLIN_TESTS_SCRATCH_H
 #define MERLIN_TESTS_SCRATCH_H
 
-extern char *scratch; /* the folder between scratch_open and scratch_close */
+extern char *scratch; /* folder between scratch_open and scratch_close */
 
 int scratch_open(void **state);
 int scratch_close(void **state);
 #define in_scratch(test) cmocka_unit_test_setup_teardown(test, scratch_open, scratch_close)
 
-/* A path in that folder; one of four in turn, so that a few can be held at once. */
+/* Returns a path in that folder; four are valid at a time, so that a few can be held at once. */
 const char *scratch_path(const char *name);
 
-char *scratch_new(void);           /* malloc'ed; aborts where no folder can be made */
-void scratch_remove(char *folder); /* with all that is in it; frees the name; may be NULL */
+char *scratch_new(void);           /* malloc'ed; aborts if no folder can be made */
+void scratch_remove(char *folder); /* removes it with its content; frees the name; may be NULL */
 
 #endif

@@ -12,7 +12,7 @@
 #include "scratch.h"
 #include "view/view_planes.h"
 
-/* last: it claims the word fail */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -5,7 +5,7 @@
 
 #include "base/json/utf8.h"
 
-/* The mark: a bit of an item's type beyond those that cJSON looks at, which are its lowest ten. */
+/* Mark of an incomplete item: a bit of its type beyond the lowest ten, which cJSON uses. */
 enum { LACKS = 1 << 16 };
 
 void json_put_item(cJSON *to, const char *key, cJSON *item)
@@ -50,7 +50,7 @@ void json_append_text(cJSON *to, const char *text)
     json_append(to, text_item(text));
 }
 
-/* The item that has just been put; NULL if anything has been lacking. */
+/* Returns the item that was just added; NULL if the parent lacks a value. */
 static cJSON *put(const cJSON *to, cJSON *item)
 {
     return to && !(to->type & LACKS) ? item : NULL;

@@ -6,11 +6,11 @@
 #include "base/json/json_put.h"
 #include "base/warnings.h"
 
-/* Changes when a name goes or means something else; more names come without. */
+/* Version of the reports' format: it changes when a name is removed or changes its meaning, not when one is added. */
 enum { REPORT_SCHEMA = 1 };
 
-/* Begins a report: "version", "schema" and "warnings"; without the latter if doubts is NULL, for who adds them later.
- * NULL if memory ran out. */
+/* Begins a report with "version", "schema" and "warnings"; without the latter if doubts is NULL, so that the caller
+ * adds them later. NULL if memory ran out. */
 cJSON *report_begin(const warnings *doubts);
 
 #endif

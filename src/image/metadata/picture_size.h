@@ -15,7 +15,7 @@ enum { IMAGE_MAX_SIDE = 16384, IMAGE_MOST_PIXELS = 64 * 1000 * 1000 };
 
 /* Refuses pictures that would take too long to read, whatever part of them is kept. */
 status picture_check_size(const char *path, long long width, long long height);
-/* Also refuses sides above IMAGE_MAX_SIDE, for kinds that are decoded as a whole and then reduced. */
+/* Refuses also sides above IMAGE_MAX_SIDE, for kinds that are decoded as a whole and then reduced. */
 status picture_check_sides(const char *path, long long width, long long height);
 /* Refuses pictures that would take too much memory where the decoder must hold all of it, so many bytes a pixel;
  * advice: how to save the picture instead. */

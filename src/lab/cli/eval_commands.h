@@ -3,27 +3,27 @@
 #ifndef MERLIN_LAB_CLI_EVAL_COMMANDS_H
 #define MERLIN_LAB_CLI_EVAL_COMMANDS_H
 
-/* merlin-lab eval stereo; argv[0] is "stereo". Returns the exit status. */
+/* Runs merlin-lab eval stereo; argv[0] is "stereo". Returns the exit status. */
 int eval_stereo(int argc, char **argv);
 
-/* merlin-lab eval photos; argv[0] is "photos". Returns the exit status. */
+/* Runs merlin-lab eval photos; argv[0] is "photos". Returns the exit status. */
 int eval_photos(int argc, char **argv);
 
-/* merlin-lab eval solvers; argv[0] is "solvers". Returns the exit status. */
+/* Runs merlin-lab eval solvers; argv[0] is "solvers". Returns the exit status. */
 int eval_solvers(int argc, char **argv);
 
-/* merlin-lab eval detail; argv[0] is "detail". Returns the exit status. */
+/* Runs merlin-lab eval detail; argv[0] is "detail". Returns the exit status. */
 int eval_detail(int argc, char **argv);
 
-/* merlin-lab eval doubts; argv[0] is "doubts". Returns the exit status. */
+/* Runs merlin-lab eval doubts; argv[0] is "doubts". Returns the exit status. */
 int eval_doubts(int argc, char **argv);
 
-/* merlin-lab eval masks; argv[0] is "masks". Returns the exit status. */
+/* Runs merlin-lab eval masks; argv[0] is "masks". Returns the exit status. */
 int eval_masks(int argc, char **argv);
 
-/* merlin-lab eval pictures; argv[0] is "pictures". Returns the exit status. */
+/* Runs merlin-lab eval pictures; argv[0] is "pictures". Returns the exit status. */
 int eval_pictures(int argc, char **argv);
-/* merlin-lab eval lights; argv[0] is "lights". Returns the exit status. */
+/* Runs merlin-lab eval lights; argv[0] is "lights". Returns the exit status. */
 int eval_lights(int argc, char **argv);
 
 #endif

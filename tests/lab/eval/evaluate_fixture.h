@@ -20,7 +20,7 @@
 #include "scratch.h"
 #include "sphere.h"
 
-#include <cmocka.h> /* behind ours: it has a macro named fail */
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
 enum { SIZE = 64, SAMPLES = 3 };
 

@@ -9,7 +9,7 @@
 #include "lab/render/render.h"
 #include "lab/render/streams.h"
 
-/* cmocka names a macro fail, so that it comes behind base/status.h */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

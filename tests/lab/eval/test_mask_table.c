@@ -9,7 +9,7 @@
 #include "lab/eval/tables/mask_table.h"
 #include "sphere.h"
 
-#include <cmocka.h> /* behind ours: it has a macro named fail */
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
 static const sphere ball = {{0, 0, -1}, 0.3f, {0.6f, 0.4f, 0.2f}, 0.7f, 96};
 

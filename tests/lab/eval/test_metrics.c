@@ -8,7 +8,7 @@
 #include "base/rng.h"
 #include "lab/eval/metrics/metrics.h"
 
-#include <cmocka.h> /* behind ours: it has a macro named fail */
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
 static img filled(int width, int height, int channels, float value)
 {

@@ -8,7 +8,7 @@
 
 #include "base/status.h"
 
-#include <cmocka.h> /* behind ours: it has a macro named fail */
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
 #include "lab/eval/stereo/rendered_capture.h"
 #include "lab/scene/material/material.h"

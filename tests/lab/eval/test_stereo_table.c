@@ -19,7 +19,7 @@
 #include "sphere.h"
 #include "stereo/integrate/surface_error.h"
 
-/* after the project's headers: its macro fail() would break the declaration of ours */
+/* last, as cmocka defines a macro named fail */
 #include <cmocka.h>
 
 static const sphere ball = {.centre = {0, 0, -1}, .radius = 0.28f, .albedo = {0.6f, 0.5f, 0.4f}, .roughness = 1};

@@ -12,7 +12,7 @@
 #include "scratch.h"
 #include "sphere.h"
 
-#include <cmocka.h> /* behind ours: it has a macro named fail */
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
 static const sphere ball = {{0.1f, -0.05f, -1.2f}, 0.35f, {0.6f, 0.4f, 0.2f}, 0.7f, 96};
 

@@ -7,7 +7,7 @@
 
 #include "lab/scene/scene.h"
 
-/* A test's object owns plain arrays, so that scene_object_free is not needed. */
+/* Allocates a test's object in static arrays, so that scene_object_free is not needed. */
 static inline scene_object shape_alloc(uint32_t vertices, uint32_t triangles)
 {
     scene_object o = {.vertex_count = vertices, .triangle_count = triangles, .shape = "test"};
@@ -24,7 +24,7 @@ static inline void shape_free(scene_object *o)
     free(o->triangle);
 }
 
-/* A sphere of rows × 2 rows quads. */
+/* Makes a sphere of rows × 2 rows quads. */
 static inline scene_object shape_sphere(vec3 centre, float radius, uint32_t rows)
 {
     uint32_t around = 2 * rows;
@@ -50,7 +50,7 @@ static inline scene_object shape_sphere(vec3 centre, float radius, uint32_t rows
     return o;
 }
 
-/* Parallelograms, each an origin and two edges; the normal is edge1 × edge2. */
+/* A parallelogram: an origin and two edges; the normal is edge1 × edge2. */
 typedef struct shape_quad {
     vec3 origin, edge1, edge2;
 } shape_quad;
@@ -75,7 +75,7 @@ static inline scene_object shape_quads(const shape_quad *quads, uint32_t count)
     return o;
 }
 
-/* Position and both normals, as the real lookup gives them; grey of albedo one half, roughness 0.4. */
+/* Sets position and both normals as the real lookup does, with a grey albedo of one half and roughness 0.4. */
 static inline void shape_grey_point(const scene_object *o, const scene_place *at, scene_surface *out)
 {
     const uint32_t *t = o->triangle[at->triangle];
@@ -96,7 +96,7 @@ static inline void shape_grey(const scene_object *o, const scene_place *places, 
         shape_grey_point(o, &places[i], &out[i]);
 }
 
-/* The same with colour and roughness that wander smoothly over space. */
+/* Evaluates points with colour and roughness that vary smoothly over space. */
 static inline void shape_patterned(const scene_object *o, const scene_place *places, int count, scene_surface *out)
 {
     for (int i = 0; i < count; i++) {

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Environment maps: sampling, coefficients, and light from all around. */
+/* Environment maps: sampling, coefficients, and illumination. */
 #include "lab/render/render.h"
 #include "optics/latlong.h"
 #include "optics/sh.h"
 #include "shapes.h"
 
-/* last: it claims the word fail */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -86,9 +86,9 @@ static void sampling_a_map_integrates_what_looking_it_up_does(void **state)
             }
         sampled /= SAMPLES;
         looked_up *= 3.14159265 * 3.14159265 / ((double)ROWS * ROWS);
-        /* brightness over density varies by less than its mean where the light is: 3/sqrt(200000) */
+        /* the ratio of brightness and density varies by less than its mean where the light is: 3/sqrt(200000) */
         assert_true(fabs(sampled / looked_up - 1) < 0.01);
-        /* band 0 is the whole of it; interpolation at the poles and around a small sun costs a little */
+        /* band 0 is the total; interpolation at the poles and around a small sun costs a little */
         assert_true(fabs(env.sh[0][1] / 0.28209479 / looked_up - 1) < 0.01);
         environment_free(&env);
     }
@@ -108,12 +108,12 @@ static void density_at_a_drawn_direction_is_the_one_it_was_drawn_with(void **sta
         environment_look(&env, d, &pdf);
         equal += fabsf(pdf - drawn.pdf[0]) <= 1e-3f * drawn.pdf[0];
     }
-    /* directions on a texel's very edge may round to its neighbour */
+    /* directions on a texel's edge may round to its neighbour */
     assert_true(equal > 1980);
     environment_free(&env);
 }
 
-/* A sun of one texel in a dim sky, as photographs of the sky have it. */
+/* The sun is one texel in a dim sky, as in photographs of the sky. */
 static void every_draw_from_a_small_sun_brings_about_the_same(void **state)
 {
     (void)state;
@@ -138,7 +138,8 @@ static void every_draw_from_a_small_sun_brings_about_the_same(void **state)
             assert_true(brought < 2 * all); /* 1.7 near the poles, where rows differ in solid angle */
             sum += brought;
         }
-        /* a draw in twenty is even over the sphere and brings next to nothing: 0.2 / sqrt(20000), six times that */
+        /* one sample in twenty is uniform over the sphere and adds next to nothing: 0.2 / sqrt(20000), six times that
+         */
         assert_true(fabs(sum / DRAWS / all - 1) < 0.01);
         img_free(&map);
         environment_free(&env);

@@ -6,7 +6,7 @@
 #include "image/exr/exr.h"
 #include "lab/render/environment.h"
 
-/* last, for it brings cmocka */
+/* last, as cmocka defines a macro named fail */
 #include "flat.h"
 
 static void write_map(const char *name, int width, int height, float value)
@@ -42,7 +42,7 @@ static void a_map_that_is_no_latitude_longitude_picture_is_refused_by_name(void 
     assert_null(folder.maps);
 }
 
-/* Of one value but for a texel in the middle. */
+/* Writes a map of one value, with another at a texel in the middle. */
 static void write_odd_map(const char *name, int width, int height, float value, float odd)
 {
     img map;

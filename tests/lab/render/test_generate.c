@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Data sets: the same whatever the threads, continued where they stopped, never mixed; and what the samples promise. */
+/* Data sets: independent of the number of threads, resumable, never mixed; and the guarantees for samples. */
 #include "lab/render/generate.h"
 #include "lab/render/sample_lamps.h"
 
@@ -16,7 +16,7 @@
 #include "optics/light.h"
 #include "scratch.h"
 
-/* last: it claims the word fail */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -126,7 +126,7 @@ static void write_mesh(const char *path, const char *apex)
     assert_int_equal(file_write(path, text, (size_t)length), OK);
 }
 
-/* Takes the contents out of a folder's render.txt, as a version wrote it that did not tell them. */
+/* Removes the checksums from a folder's render.txt, as in versions that did not write them. */
 static void forget_contents(const char *folder)
 {
     char *path = file_join(folder, "render.txt"), *text;
@@ -286,8 +286,8 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Relative differences of the direct image and the BRDF on the stored maps, where a pixel and its neighbours are whole;
- * returns how many. */
+/* Computes relative differences of the direct image and the BRDF on the stored maps, where a pixel and its neighbours
+ * are fully covered; returns how many. */
 static size_t compare_direct(const sample *s, float *error)
 {
     size_t count = 0;
@@ -360,7 +360,7 @@ static void samples_of_any_lens_agree_with_the_brdf_on_their_maps(void **state)
     free(error);
 }
 
-/* What a point lamp does to the maps, as far as it is let through. */
+/* Computes the differences of a lamp's image and the maps under that lamp, times visibility. */
 static size_t compare_lamp(const sample *s, const sample_lamp *under, float *error)
 {
     size_t count = 0;

@@ -7,7 +7,7 @@
 
 #include "base/rng.h"
 
-/* last: it claims the word fail */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -17,7 +17,7 @@
 
 enum { SIZE = 32 };
 
-/* A flat object facing the camera in the left part of the picture and a nearer one to the right, textured. */
+/* Makes a flat object facing the camera in the left part of the picture and a nearer one to the right, textured. */
 static void make_maps(sample *s)
 {
     *s = (sample){.fov = 60};
@@ -28,7 +28,7 @@ static void make_maps(sample *s)
     assert_int_equal(img_new(&s->indirect, SIZE, SIZE, 3), OK);
     for (int i = 0; i < SIZE * SIZE; i++) {
         s->mask.data[i] = i % SIZE > 3 ? 1 : i % SIZE == 3 ? 0.5f : 0;
-        s->depth.data[i] = i % SIZE < 16 ? 1.8f : 0.6f; /* a jump of some ten pixels */
+        s->depth.data[i] = i % SIZE < 16 ? 1.8f : 0.6f; /* a discontinuity of some ten pixels */
         s->normal.data[3 * i + 2] = 1;
         for (int c = 0; c < 3; c++)
             s->albedo.data[3 * i + c] = 0.1f + 0.8f * (float)((i * 7 + c) % 11) / 10;
@@ -72,7 +72,7 @@ static void grain_shrinks_and_its_mean_stays(void **state)
         if (!pass) assert_int_equal(filter_layer(&s, &s.indirect, 3), OK);
     }
     assert_true(fabs(after - before) < 0.02);
-    /* about 30 pixels of a disc, each weighted by half on average: a tenth of the variance is left at most */
+    /* about 30 pixels of a disc, each with a mean weight of one half: at most a tenth of the variance is left */
     assert_true(spread_after < 0.1 * spread_before);
     sample_free(&s);
 }

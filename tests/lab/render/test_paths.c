@@ -7,7 +7,7 @@
 #include "optics/light.h"
 #include "shapes.h"
 
-/* last: it claims the word fail */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -43,7 +43,7 @@ static void assert_within(double value, double expected, double relative)
         fail_msg("%g is not %g within %g", value, expected, relative);
 }
 
-/* Radiance Φ A/π is the same everywhere on the wall, and so is what arrives: every bounce multiplies it by A. */
+/* Radiance Φ A/π is the same everywhere on the wall, and so is irradiance: every bounce multiplies it by A. */
 static void light_at_the_centre_of_a_diffuse_sphere_loses_its_albedo_at_each_bounce(void **state)
 {
     (void)state;
@@ -56,10 +56,10 @@ static void light_at_the_centre_of_a_diffuse_sphere_loses_its_albedo_at_each_bou
     double direct = 5.95 * 0.5 / pi;
     for (int y = 0; y < 16; y++)
         for (int x = 0; x < 16; x++) {
-            /* facets of a sphere of 96 rows lie up to (π/96)²/8 = 1.3e-4 inside it, twice that in 1/d² */
+            /* facets of a sphere of 96 rows are up to (π/96)²/8 = 1.3e-4 inside it, twice that in 1/d² */
             assert_within(*img_at(&out.mask, x, y), 1, 0);
             assert_within(*img_at(&out.direct, x, y), direct, 0.001);
-            /* and the shading normals are not the facets': a percent of the cosine-distributed paths is cut off */
+            /* and the shading normals differ from the facets': a percent of the cosine-distributed paths is cut off */
             assert_within(*img_at(&out.bounce2, x, y), 0.5 * direct, 0.01);
             assert_within(*img_at(&out.bounce3, x, y), 0.25 * direct, 0.02);
             assert_within(*img_at(&out.indirect, x, y), *img_at(&out.bounce2, x, y) + *img_at(&out.bounce3, x, y),
@@ -88,7 +88,7 @@ static void convex_object_has_no_indirect_light_at_all(void **state)
     stage_close(&s);
 }
 
-/* Evenly lit from everywhere it returns its albedo's share, however bright the surroundings are. */
+/* Under uniform light a sphere reflects its albedo's share, whatever the radiance. */
 static void surroundings_of_any_radiance_light_a_sphere_in_full(void **state)
 {
     (void)state;
@@ -145,7 +145,7 @@ static double flash_radiance(vec3 p, vec3 n)
     return 5.95 * 0.5 / pi * fmax(0, -vec3_dot(n, p) / sqrt(d2)) / d2;
 }
 
-/* cosθ cosθ' / d² between two surface points. */
+/* Returns cosθ cosθ' / d² between two surface points. */
 static double geometry_term(vec3 p, vec3 n, vec3 q, vec3 m)
 {
     vec3 d = vec3_sub(q, p);
@@ -153,7 +153,7 @@ static double geometry_term(vec3 p, vec3 n, vec3 q, vec3 m)
     return fmax(0, vec3_dot(n, d)) * fmax(0, -vec3_dot(m, d)) / (d2 * d2);
 }
 
-/* Bounce 2 leaving p of the floor (or wall): the other square's direct light, by midpoint quadrature. */
+/* Returns bounce 2 leaving p of the floor (or wall): the other square's direct light, by midpoint quadrature. */
 static double bounce2_at(vec3 p, vec3 n, vec3 (*other)(double, double), vec3 m, int steps)
 {
     double sum = 0;
@@ -203,7 +203,7 @@ static void open_corner_of_two_diffuse_squares_matches_quadrature(void **state)
             sum[0] += bounce[0][0].x;
             sum[1] += bounce[0][1].x;
         }
-        /* 400000 paths, of which a tenth or more arrive: relative deviation below 0.005, and the quadratures' own */
+        /* 400000 paths, of which a tenth or more hit: relative deviation below 0.005, and the quadratures' own error */
         assert_within(sum[0] / PATHS, bounce2_at(p, floor_normal, on_wall, wall_normal, 400), 0.01);
         assert_within(sum[1] / PATHS, bounce3_at(p, 40), 0.03);
     }
@@ -274,7 +274,7 @@ static void plate_casts_a_shadow_on_the_floor_under_it(void **state)
     stage_close(&s);
 }
 
-/* The plate hides what of the disc lies to its side of the line from its edge: half, right under the edge. */
+/* The plate hides the part of the disc on its side of a line through its edge: half, directly under the edge. */
 static void a_disc_half_behind_a_plate_gives_half(void **state)
 {
     (void)state;
@@ -297,7 +297,7 @@ static void a_disc_half_behind_a_plate_gives_half(void **state)
         arrived += seen[i].x;
         all += sent[i].x;
     }
-    /* 1600 places on the disc, one a quarter each: deviation below 0.01 */
+    /* 1600 points, each testing one point a quarter: deviation below 0.01 */
     assert_true(fabs(arrived / all - 0.5) < 0.03);
     stage_close(&s);
 }

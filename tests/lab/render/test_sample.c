@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Samples on disk: what is written is read back, and what is not a sample is refused. */
+/* Samples on disk: what is written is read back, and files that are not samples are refused. */
 #include "lab/render/sample.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 #include "image/exr/exr.h"
 #include "scratch.h"
 
-/* last: it claims the word fail */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -156,7 +156,7 @@ static void sample_without_a_layer_is_refused_by_name(void **state)
     sample_free(&s);
 }
 
-/* Infinity becomes half's largest number where it is written. */
+/* Infinity becomes half's largest number when it is written. */
 static void sample_with_nan_is_refused(void **state)
 {
     (void)state;

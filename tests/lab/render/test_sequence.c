@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Paths' numbers: every square block of pixels covers the unit square evenly. */
+/* Numbers for paths: every square block of pixels covers the unit square evenly. */
 #include "lab/render/sequence.h"
 
 #include <setjmp.h>
@@ -49,7 +49,7 @@ static void pairs_of_a_path_are_not_alike(void **state)
     double product = 0;
     for (uint32_t i = 0; i < POINTS; i++)
         product += (sequence_at(&q, SEQUENCE_DIRECTION, i).u1 - 0.5f) * (sequence_at(&q, SEQUENCE_LIGHT, i).u1 - 0.5f);
-    /* of independent numbers the mean deviates by 1/12/sqrt(4096) = 0.0013 */
+    /* for independent numbers the mean deviates by 1/12/sqrt(4096) = 0.0013 */
     assert_true(product / POINTS > -0.005 && product / POINTS < 0.005);
 }
 

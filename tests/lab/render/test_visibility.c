@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* Few rays where pixels agree, all of them at edges, and the same coverage as with all of them everywhere. */
+/* Few rays where pixels agree, all rays at edges, and the same coverage as with all rays everywhere. */
 #include "lab/render/visibility.h"
 
 #include "shapes.h"
 
-/* last: it claims the word fail */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -37,7 +37,7 @@ static void few_rays_find_the_coverage_of_a_sphere(void **state)
             for (int i = 0; i < seen.count; i++)
                 assert_true(seen.hit[i].distance > 0.6f && seen.hit[i].distance < 1);
         }
-    /* the outline is a circle of tangent 0.35/sqrt(1 - 0.35²); 200 pixels at the edge know their share to 1/16 or so */
+    /* the outline is a circle of tangent 0.35/sqrt(1 - 0.35²); 200 pixels at the edge have their share to 1/16 or so */
     double radius = 0.35 / sqrt(1 - 0.35 * 0.35) / tan(3.14159265 / 6) * SIZE / 2;
     assert_true(fabs(covered / (3.14159265 * radius * radius) - 1) < 0.005);
     assert_true(plain > 1000 && empty > 2000);
@@ -48,7 +48,7 @@ static void few_rays_find_the_coverage_of_a_sphere(void **state)
     shape_free(&sphere);
 }
 
-/* A plate in front of another: their pixels along the edge see both. */
+/* One plate is in front of another: pixels along the edge see both. */
 static void an_edge_between_two_surfaces_gets_all_its_rays(void **state)
 {
     (void)state;
@@ -77,7 +77,7 @@ static void an_edge_between_two_surfaces_gets_all_its_rays(void **state)
     shape_free(&plates);
 }
 
-/* Few rays expected: a quick tree; many: a good one. */
+/* With few expected rays a quick tree is built, with many a good one. */
 static void what_rays_meet_does_not_depend_on_how_good_the_tree_is(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* glTF files made of parts, for the tests of their reader. */
+/* glTF files assembled from parts, for the tests of their reader. */
 #ifndef MERLIN_TESTS_SCENE_GLTF_FIXTURE_H
 #define MERLIN_TESTS_SCENE_GLTF_FIXTURE_H
 
@@ -20,10 +20,10 @@
 #include "mesh/read/mesh_read_gltf.h"
 #include "scratch.h"
 
-/* last: it defines a macro named fail */
+/* last, as cmocka defines a macro named fail */
 #include <cmocka.h>
 
-/* A document around a buffer: bytes that grow, views and accessors that name them, and the rest as text. */
+/* A document with one buffer: its bytes, the views and accessors that refer to them, and the rest as text. */
 typedef struct document {
     uint8_t bytes[4096];
     size_t size;
@@ -44,7 +44,7 @@ static inline void append(char *text, size_t room, const char *format, ...)
     va_end(arguments);
 }
 
-/* A view of the bytes; its number. */
+/* Adds a view of the bytes and returns its number. */
 static inline int add_view(document *d, const void *bytes, size_t size, int stride)
 {
     memcpy(d->bytes + d->size, bytes, size);
@@ -69,7 +69,7 @@ static inline int add_array(document *d, const void *bytes, size_t size, int typ
     return add_accessor(d, text);
 }
 
-/* A buffer as a data: URI, by way of base 64. */
+/* Writes the buffer as a data: URI, in base 64. */
 static inline void put_uri(const document *d, char *out)
 {
     static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -82,7 +82,7 @@ static inline void put_uri(const document *d, char *out)
     *out = 0;
 }
 
-/* The JSON; uri NULL: of a GLB, which holds the buffer. */
+/* Returns the JSON; uri NULL: for a GLB, which holds the buffer. */
 static inline char *json_of(const document *d, const char *uri)
 {
     char *text = NULL;
@@ -131,7 +131,7 @@ static inline void assert_at(vec3 p, float x, float y, float z)
     fail_msg("(%g %g %g) is not (%g %g %g)", (double)p.x, (double)p.y, (double)p.z, (double)x, (double)y, (double)z);
 }
 
-/* One triangle, (0 0 0), (2 0 0), (0 3 0), without corners. */
+/* Returns one triangle, (0 0 0), (2 0 0), (0 3 0), without indices. */
 static inline document triangle_document(void)
 {
     document d = {0};

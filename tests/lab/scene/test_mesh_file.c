@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Meshes from files: OBJ, PLY and glTF load, are posed like generated objects, and broken files are refused in words.
- */
+/* Meshes from files: OBJ, PLY and glTF load, are posed like generated objects, and broken files are refused with a
+ * clear message. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -16,7 +16,7 @@
 #include "lab/scene/scene.h"
 #include "scratch.h"
 
-/* last: it defines a macro named fail */
+/* last, as cmocka defines a macro named fail */
 #include <cmocka.h>
 
 /* A unit cube of six quads, counter-clockwise from outside. */
@@ -59,7 +59,7 @@ static double signed_volume(const scene_object *o)
 static void check_cube(const scene_object *o)
 {
     assert_int_equal(o->triangle_count, 12);
-    assert_int_equal(o->vertex_count, 24); /* every corner split by its three creases */
+    assert_int_equal(o->vertex_count, 24); /* every corner is split by its three creases */
     assert_true(signed_volume(o) > 0);
     for (uint32_t t = 0; t < o->triangle_count; t++) {
         scene_surface s;
@@ -80,7 +80,7 @@ static void polygons_without_normals_are_triangulated_and_creased(void **state)
     scene_object_free(&o);
 }
 
-/* The cube at half its size, between vertices that no face has. */
+/* The cube is at half its size, between vertices that no face uses. */
 static void obj_numbers_may_begin_with_their_point(void **state)
 {
     (void)state;
@@ -116,7 +116,7 @@ static void ascii_ply_is_read(void **state)
     scene_object_free(&o);
 }
 
-/* The tetrahedron of ascii_ply_is_read among more vertices, in the given type, moved and scaled. */
+/* Loads the tetrahedron of ascii_ply_is_read among more vertices, in the given type, moved and scaled. */
 static status load_tetrahedron(const char *type, double x, double size, const char *stray, scene_object *out)
 {
     char text[800];
@@ -140,7 +140,7 @@ static void vertices_of_no_face_do_not_count_for_the_frame(void **state)
     scene_object_free(&without);
 }
 
-/* A square with a notch, from each of its corners on. */
+/* The square with a notch is listed from each of its corners on. */
 static void concave_polygons_of_a_ply_do_not_fold_over(void **state)
 {
     (void)state;
@@ -169,7 +169,7 @@ static void ply_far_from_its_origin_keeps_its_digits(void **state)
     (void)state;
     scene_object here, far;
     assert_int_equal(load_tetrahedron("double", 0, 0.7, "", &here), OK);
-    assert_int_equal(load_tetrahedron("double", 5.1e6, 0.7, "", &far), OK); /* floats lie 0.5 apart there */
+    assert_int_equal(load_tetrahedron("double", 5.1e6, 0.7, "", &far), OK); /* floats are 0.5 apart there */
     assert_int_equal(far.vertex_count, here.vertex_count);
     for (uint32_t v = 0; v < far.vertex_count; v++) /* float rounding of lengths near 1 */
         assert_true(vec3_length(vec3_sub(far.position[v], here.position[v])) < 1e-5f);
@@ -177,7 +177,7 @@ static void ply_far_from_its_origin_keeps_its_digits(void **state)
     scene_object_free(&here);
 }
 
-/* A square whose triangles share no corner in the file. */
+/* The square's triangles share no corner in the file. */
 static void corners_that_only_texture_or_material_tells_apart_are_one_vertex(void **state)
 {
     (void)state;
@@ -195,7 +195,7 @@ static void corners_that_only_texture_or_material_tells_apart_are_one_vertex(voi
     }
 }
 
-/* A face given again, begun at another corner or by vertices of its own, adds nothing; its back does. */
+/* A face that is repeated, from another corner or with vertices of its own, adds nothing; its reverse does. */
 static void triangles_that_lie_where_others_do_are_dropped(void **state)
 {
     (void)state;
@@ -207,7 +207,7 @@ static void triangles_that_lie_where_others_do_are_dropped(void **state)
     scene_object_free(&o);
 }
 
-/* As the mirrored half of a figure does. */
+/* The mirrored half of a figure has such triangles. */
 static void triangles_that_wind_against_their_normals_are_turned(void **state)
 {
     (void)state;
@@ -306,7 +306,7 @@ static void folders_and_pipes_are_refused_without_waiting(void **state)
     scene_object o;
     assert_int_equal(file_make_folder(scratch_path(NAMES[0])), OK);
     assert_int_equal(mkfifo(scratch_path(NAMES[1]), 0600), 0);
-    alarm(20); /* whoever opens a pipe that nobody writes to waits for ever */
+    alarm(20); /* opening a pipe without a writer would block forever */
     for (int i = 0; i < 2; i++) {
         assert_int_equal(object_of(scratch_path(NAMES[i]), 1, 1, &o), MERLIN_BAD_INPUT);
         assert_non_null(strstr(status_message(), "not a plain file"));
@@ -336,7 +336,7 @@ static void a_mesh_is_read_once_for_many_objects(void **state)
     scene_model_free(model);
 }
 
-/* Meshes with normals and thousands of faces, where a folder of them is at hand. */
+/* The test reads a folder of real meshes with normals and thousands of faces, if there is one. */
 static void meshes_of_the_world_are_posed_before_the_camera(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* glTF by hand: what each of its features means for the surface, and what is refused. */
+/* glTF written by hand: the effect of each feature on the surface, and what is refused. */
 #include "gltf_fixture.h"
 
 static void assert_triangle(const triangle_mesh *mesh)
@@ -62,7 +62,7 @@ static void buffers_that_are_no_plain_files_beside_it_are_refused(void **state)
         {"data:;base64,A*AA", "not base 64"}};
     document d = triangle_document();
     assert_int_equal(mkfifo(scratch_path("pipe"), 0600), 0);
-    alarm(20); /* whoever opens a pipe that nobody writes to waits for ever */
+    alarm(20); /* opening a pipe without a writer would block forever */
     for (size_t i = 0; i < sizeof URIS / sizeof *URIS; i++) {
         char *text = json_of(&d, URIS[i][0]);
         triangle_mesh mesh = {0};
@@ -95,7 +95,7 @@ static void positions_may_be_numbers_of_any_type(void **state)
         for (int normalized = 0; normalized < 2; normalized++) {
             document d = {0};
             char text[200];
-            /* three numbers and one of no meaning a vertex */
+            /* three numbers and one without meaning a vertex */
             snprintf(text, sizeof text,
                      "\"bufferView\":%d,\"componentType\":%d,\"count\":3,\"type\":\"VEC3\",\"normalized\":%s",
                      add_view(&d, CASES[i].bytes, CASES[i].size, (int)CASES[i].size / 3), CASES[i].type,
@@ -142,7 +142,7 @@ static void corners_may_be_whole_numbers_of_three_sizes(void **state)
     }
 }
 
-/* Vertices between others, and normals in the same view. */
+/* Vertices are interleaved with others, and normals are in the same view. */
 static void elements_may_lie_apart(void **state)
 {
     (void)state;
@@ -206,7 +206,7 @@ static void strips_and_fans_wind_as_their_first_triangle(void **state)
                "{\"attributes\":{\"POSITION\":0},\"mode\":1},{\"attributes\":{\"POSITION\":0},\"mode\":0}]}",
                mode);
         must_read(&d, &mesh, &parts);
-        assert_int_equal(mesh.triangle_count, 3); /* lines and points are none */
+        assert_int_equal(mesh.triangle_count, 3); /* lines and points are skipped */
         assert_int_equal(mesh.vertex_count, 5);
         for (uint32_t t = 0; t < 3; t++) {
             vec3 a = corner_of(&mesh, t, 0);
@@ -233,7 +233,7 @@ static void materials_are_the_parts_in_their_order(void **state)
            "{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"material\":5}]}");
     must_read(&d, &mesh, &parts);
     const uint8_t wanted[] = {2, 1, 0, 1};
-    assert_int_equal(parts, 3); /* what is not shown is none */
+    assert_int_equal(parts, 3); /* materials that are not shown are no parts */
     assert_int_equal(mesh.triangle_count, 4);
     assert_memory_equal(mesh.part, wanted, sizeof wanted);
     mesh_free(&mesh);

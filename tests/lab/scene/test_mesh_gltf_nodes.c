@@ -8,13 +8,13 @@ static void transforms_of_nodes_add_up(void **state)
     document d = triangle_document();
     triangle_mesh mesh;
     int parts;
-    /* moved by (0 0 7); turned a quarter about z and twice as large; and a matrix that moves by x */
+    /* translated by (0 0 7); rotated a quarter about z and scaled by two; and a matrix that translates along x */
     append(d.nodes, sizeof d.nodes,
            "{\"children\":[1],\"translation\":[0,0,7]},"
            "{\"children\":[2],\"rotation\":[0,0,0.7071067811865476,0.7071067811865476],\"scale\":[2,2,2]},"
            "{\"mesh\":0,\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,10,0,0,1]}");
     must_read(&d, &mesh, &parts);
-    /* about the mesh's own origin, which lies at (0 20 7) */
+    /* about the mesh's own origin, at (0 20 7) */
     assert_at(corner_of(&mesh, 0, 0), 0, 0, 0);
     assert_at(corner_of(&mesh, 0, 1), 0, 4, 0);
     assert_at(corner_of(&mesh, 0, 2), -6, 0, 0);
@@ -31,7 +31,7 @@ static void several_meshes_keep_their_places(void **state)
            "{\"children\":[1,2]},{\"mesh\":0,\"translation\":[5e6,0,0]},{\"mesh\":0,\"translation\":[5e6,0.25,1]}");
     must_read(&d, &mesh, &parts);
     assert_int_equal(mesh.triangle_count, 2);
-    assert_at(corner_of(&mesh, 0, 1), 2, 0, 0); /* floats lie 0.5 apart where it is */
+    assert_at(corner_of(&mesh, 0, 1), 2, 0, 0); /* floats are 0.5 apart at its position */
     assert_at(corner_of(&mesh, 1, 1), 2, 0.25f, 1);
     mesh_free(&mesh);
 }
@@ -63,7 +63,7 @@ static void the_scene_that_is_meant_is_read(void **state)
         uint32_t triangles;
     } CASES[] = {{",\"scenes\":[{\"nodes\":[0]},{\"nodes\":[0,1]}]", 1},
                  {",\"scene\":1,\"scenes\":[{\"nodes\":[0]},{\"nodes\":[0,1]}]", 3},
-                 {",\"extras\":[]", 3}}; /* none: all */
+                 {",\"extras\":[]", 3}}; /* without scenes: all nodes */
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
         document d = triangle_document();
         triangle_mesh mesh;
@@ -194,7 +194,7 @@ static void json_too_deep_or_of_too_many_values_is_refused_before_it_is_taken_ap
     free(text);
 }
 
-/* A small file in which much is said by naming one thing often: 9000 times 300 triangles. */
+/* The file is small and refers to one mesh often: 9000 times 300 triangles. */
 static void a_small_file_has_no_more_triangles_than_a_million(void **state)
 {
     (void)state;

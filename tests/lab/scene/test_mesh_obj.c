@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* OBJ files as people and programs write them, by the surface that comes of them. */
+/* OBJ files as people and programs write them, tested by the resulting surface. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -16,7 +16,7 @@
 #include "mesh/read/mesh_read_obj.h"
 #include "scratch.h"
 
-/* last: it defines a macro named fail */
+/* last, as cmocka defines a macro named fail */
 #include <cmocka.h>
 
 #define SQUARE "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
@@ -48,7 +48,7 @@ static void assert_at(vec3 p, float x, float y, float z)
     assert_float_equal(p.z, z, 1e-6f);
 }
 
-/* The unit square in the plane z = 0, seen from +z, of two triangles. */
+/* Asserts that a text is the unit square in the plane z = 0, seen from +z, of two triangles. */
 static void assert_square(const char *text)
 {
     triangle_mesh mesh;
@@ -76,7 +76,7 @@ static void faces_are_read_however_they_are_written(void **state)
 {
     (void)state;
     assert_square(SQUARE "f 1 2 3 4\n");
-    assert_square(SQUARE "f 1 2 3 4"); /* no end of line */
+    assert_square(SQUARE "f 1 2 3 4"); /* without a line end */
     assert_square(SQUARE "f 1/1 2/2 3/3 4/4\n");
     assert_square(SQUARE "f 1/ 2/ 3/ 4/\n");
     assert_square(SQUARE "vn 0 0 1\nf 1//1 2//1 3//1 4//1\n");
@@ -107,7 +107,7 @@ static void concave_polygons_do_not_fold_over(void **state)
     (void)state;
     triangle_mesh mesh;
     int parts;
-    /* a comb of four teeth: its triangles' areas sum up to its own only if none lies outside */
+    /* a comb of four teeth: its triangles' areas add up to its own only if none is outside */
     char text[600] = "";
     size_t end = 0;
     for (int tooth = 0; tooth < 4; tooth++)
@@ -120,7 +120,7 @@ static void concave_polygons_do_not_fold_over(void **state)
     for (uint32_t t = 0; t < mesh.triangle_count; t++) {
         vec3 a = corner_of(&mesh, t, 0);
         vec3 n = vec3_cross(vec3_sub(corner_of(&mesh, t, 1), a), vec3_sub(corner_of(&mesh, t, 2), a));
-        assert_true(n.z >= 0); /* all the same way */
+        assert_true(n.z >= 0); /* all in the same orientation */
         area += n.z / 2;
     }
     assert_float_equal(area, 4 * 1 + 4 * 0.5 * 2, 1e-5f); /* back and teeth */
@@ -178,7 +178,7 @@ static void normals_are_kept_where_every_corner_has_one(void **state)
     mesh_free(&mesh);
 }
 
-/* In a country's coordinates floats lie half a metre apart. */
+/* In national coordinates floats are half a metre apart. */
 static void far_from_its_origin_a_mesh_keeps_its_digits(void **state)
 {
     (void)state;
@@ -191,7 +191,7 @@ static void far_from_its_origin_a_mesh_keeps_its_digits(void **state)
     assert_float_equal(vec3_sub(corner_of(&mesh, 0, 2), a).y, 0.5, 1e-6f);
     mesh_free(&mesh);
     assert_int_equal(parse("v 5 0 4\nv 6 0 4\nv 5 1 4\nf 1 2 3\n", &mesh, &parts), OK);
-    assert_at(corner_of(&mesh, 0, 1), 6, 0, 4); /* near it stays where it is */
+    assert_at(corner_of(&mesh, 0, 1), 6, 0, 4); /* near its origin a mesh is not moved */
     mesh_free(&mesh);
 }
 
@@ -250,7 +250,7 @@ static void more_triangles_than_allowed_are_refused(void **state)
     mesh_free(&mesh);
 }
 
-/* A vertex with as many normals as corners: whoever looks through all of them at each takes a minute. */
+/* A vertex has as many normals as corners: searching all of them at each corner would take a minute. */
 static void very_many_normals_at_a_vertex_take_no_time(void **state)
 {
     (void)state;
@@ -278,7 +278,7 @@ static void material_libraries_are_not_opened(void **state)
     int parts;
     assert_int_equal(file_write(scratch_path("a.obj"), text, sizeof text - 1), OK);
     assert_int_equal(mkfifo(scratch_path("pipe.mtl"), 0600), 0);
-    alarm(20); /* whoever opens a pipe that nobody writes to waits for ever */
+    alarm(20); /* opening a pipe without a writer would block forever */
     assert_int_equal(mesh_read(scratch_path("a.obj"), &mesh, &parts), OK);
     alarm(0);
     assert_int_equal(mesh.triangle_count, 2);

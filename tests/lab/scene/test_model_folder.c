@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Meshes of a folder as objects: drawn and deformed from (seed, index) alone, whatever else lies in the folder. */
+/* Meshes of a folder as objects: chosen and deformed by (seed, index) alone, whatever else is in the folder. */
 #include "lab/scene/object/model_folder.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@
 #include "base/file.h"
 #include "scratch.h"
 
-/* last: it claims the word fail */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

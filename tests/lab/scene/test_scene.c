@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Generated objects keep the promises of scene.h: deterministic, closed, finite, in frame, materials in range. */
+/* Generated objects satisfy scene.h: deterministic, closed, finite, in frame, materials in range. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,7 +10,7 @@
 #include "base/rng.h"
 #include "lab/scene/scene.h"
 
-/* last: it defines a macro named fail */
+/* last, as cmocka defines a macro named fail */
 #include <cmocka.h>
 
 enum { OBJECTS = 200 };
@@ -76,7 +76,7 @@ static void every_class_is_drawn(void **state)
         assert_true(seen[k] >= OBJECTS / 20);
 }
 
-/* Six times the volume enclosed by the surface, about its own first vertex. */
+/* Returns six times the volume enclosed by the surface, about its own first vertex. */
 static double signed_volume(const scene_object *o)
 {
     double sum = 0;
@@ -121,13 +121,13 @@ static void shapes_are_finite_closed_and_wind_outward(void **state)
             area += (double)vec3_length(cross);
         }
         assert_true(signed_volume(&o) > 0);
-        /* smooth normals lie close to the faces'; over a whole surface they agree but for the roundings of edges */
+        /* smooth normals are close to the faces'; over a whole surface they agree except at rounded edges */
         assert_true(facing > 0.85 * area);
         scene_object_free(&o);
     }
 }
 
-/* Share of the frame under the silhouette, on a grid fine enough (1 %) for the bounds tested. */
+/* Returns the share of the frame under the silhouette, on a grid fine enough (1 %) for the bounds tested. */
 static float coverage(const scene_object *o, int *outside)
 {
     enum { SIDE = 100 };
@@ -203,7 +203,7 @@ static void surfaces_have_materials_in_range_and_unit_normals(void **state)
     }
 }
 
-/* Borders are crisp but not torn: between close neighbours on one triangle the albedo rarely jumps. */
+/* Borders are sharp but continuous: between close neighbours on one triangle the albedo rarely jumps. */
 static void materials_are_continuous_but_at_borders(void **state)
 {
     (void)state;
@@ -216,7 +216,7 @@ static void materials_are_continuous_but_at_borders(void **state)
             uint32_t t = (uint32_t)rng_below(&r, (int)o.triangle_count);
             scene_surface a, b;
             scene_surfaces_eval(&o, &(scene_place){t, 0.3f, 0.3f}, 1, &a);
-            scene_surfaces_eval(&o, &(scene_place){t, 0.31f, 0.3f}, 1, &b); /* a hundredth of a triangle on */
+            scene_surfaces_eval(&o, &(scene_place){t, 0.31f, 0.3f}, 1, &b); /* a hundredth of a triangle further */
             vec3 d = vec3_sub(a.albedo, b.albedo);
             pairs++;
             jumps += vec3_length(d) > 0.1f || fabsf(a.roughness - b.roughness) > 0.1f;
@@ -227,7 +227,7 @@ static void materials_are_continuous_but_at_borders(void **state)
     assert_true(jumps < pairs / 200);
 }
 
-/* The corners of a triangle carry its vertices' positions, whatever the material does. */
+/* The corners of a triangle have its vertices' positions, whatever the material. */
 static void surface_positions_are_interpolated(void **state)
 {
     (void)state;
@@ -255,7 +255,7 @@ static void a_senseless_field_of_view_is_refused(void **state)
     scene_object_free(&o);
 }
 
-/* Every pattern gets its turn within forty objects; what a point is given must not depend on those beside it. */
+/* Every pattern occurs within forty objects; a point's result must not depend on those beside it. */
 static void point_looks_the_same_alone_and_among_others(void **state)
 {
     (void)state;

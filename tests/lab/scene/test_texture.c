@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Photographed materials: which files make which, and that the surface wears what the pictures say. */
+/* Photographed materials: which files make which, and that the surface has the pictures' properties. */
 #include "lab/scene/material/texture.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 #include "image/write/write.h"
 #include "scratch.h"
 
-/* last: it claims the word fail */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -20,7 +20,7 @@
 
 #include <cmocka.h>
 
-/* A picture of one colour, [0, 1] as the file stores it. */
+/* Writes a picture of one colour, [0, 1] as stored in the file. */
 static void put(const char *name, float r, float g, float b)
 {
     img image;
@@ -192,7 +192,7 @@ static void objects_wear_the_folder(void **state)
         scene_object_free(&again);
         scene_object_free(&without);
     }
-    /* three objects in four, less what paint over the grounds covers wholly */
+    /* three objects in four, minus what paint covers wholly */
     assert_in_range(worn, points / 2, points * 9 / 10);
     scene_textures_free(&t);
 }

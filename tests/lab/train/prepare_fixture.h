@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Samples for the tests of how they are prepared. */
+/* Samples for the tests of their preparation. */
 #ifndef MERLIN_TESTS_TRAIN_PREPARE_FIXTURE_H
 #define MERLIN_TESTS_TRAIN_PREPARE_FIXTURE_H
 
@@ -11,7 +11,7 @@
 #include "lab/train/prepare.h"
 #include "optics/orientation.h"
 
-/* cmocka names a macro fail, so that it comes behind base/status.h */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -21,7 +21,7 @@
 
 #include "prepared.h"
 
-/* What earlier runs were trained with does not change. */
+/* The training of earlier runs must not change. */
 static inline void photographs_have_no_faults_unless_asked_for(void **unused)
 {
     (void)unused;
@@ -36,7 +36,7 @@ static inline void photographs_have_no_faults_unless_asked_for(void **unused)
     }
 }
 
-/* Those of them that are to be as in the paper lose the draw of exposure, noise and white, too. */
+/* Photographs as in the paper skip the random numbers of exposure, noise and white, too. */
 static inline void perfect_cameras_are_as_many_as_asked_for(void **unused)
 {
     (void)unused;
@@ -73,7 +73,7 @@ static inline vec3 random_direction(rng *r)
     return vec3_make(s * cosf(phi), s * sinf(phi), z);
 }
 
-/* As train_dataset_get turns normals; rows run downwards, y upwards. */
+/* Turns a direction as train_dataset_get turns normals; rows run downwards, y upwards. */
 static inline vec3 turned(int orientation, vec3 d)
 {
     if (orientation & ORIENTATION_FLIP_X) d.x = -d.x;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Three samples of a sphere as a data set, and room for one of them as training sees it. */
+/* A data set of three samples of a sphere, and room for one of them as training sees it. */
 #ifndef MERLIN_TESTS_PREPARED_H
 #define MERLIN_TESTS_PREPARED_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Samples of a few pixels for tests of training: a sphere with a two-coloured albedo under the flash, lit by the
+/* Samples of a few pixels for the tests of training: a sphere with a two-coloured albedo under the flash, lit by the
  * project's own physics, written as sample files. */
 #ifndef MERLIN_TESTS_SYNTHETIC_H
 #define MERLIN_TESTS_SYNTHETIC_H
@@ -23,7 +23,7 @@ static inline void put(const img *image, int x, int y, vec3 v)
     p[2] = v.z;
 }
 
-/* A smooth sky, which nine coefficients hold whole; another one for each sample. */
+/* Sets a smooth sky, which nine coefficients represent exactly; another one for each sample. */
 static inline void sphere_sky(int which, float sh[9][3])
 {
     for (int i = 0; i < 27; i++)
@@ -52,7 +52,7 @@ static inline void sphere_pixel(sample *s, const camera *c, int x, int y, int wh
     put(&s->normal, x, y, normal);
     put(&s->direct, x, y, shade_point(&in));
     put(&s->env, x, y, sphere_environment(s, albedo, normal, ray));
-    /* partly below the smallest normal half float: the arithmetic of such numbers must not differ between threads */
+    /* partly below the smallest normal half float: arithmetic on such numbers must not differ between threads */
     put(&s->indirect, x, y, vec3_scale(albedo, y % 2 ? 5e-5f : 0.05f));
     *img_at(&s->roughness, x, y) = 0.5f;
     *img_at(&s->depth, x, y) = -point.z;

@@ -3,7 +3,7 @@
 
 #include "lab/train/average.h"
 
-/* cmocka names a macro fail, so that it comes behind base/status.h */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -53,7 +53,7 @@ static double nothing(int step)
     return 0;
 }
 
-/* Weights that are 30 at first and then value(step): their mean after the last step. */
+/* Asserts the mean after the last step of weights that are 30 at first and then value(step). */
 static void mean_is(double decay, double (*value)(int step), int steps, double expected, double tolerance)
 {
     nn_graph *graph;
@@ -72,16 +72,16 @@ static void mean_is(double decay, double (*value)(int step), int steps, double e
     nn_graph_free(graph);
 }
 
-/* Weights that swing about 1 from step to step, as those of a network about its optimum: the mean taken at every step,
- * by definition, is 1 but for what is left of the start and half a swing of one step's share. */
+/* Weights alternate about 1 from step to step, as those of a network about its optimum: the mean taken at every step is
+ * 1 except for what is left of the start and half the amplitude of one step's share. */
 static void mean_is_nearer_to_the_centre_than_any_step(void **state)
 {
     (void)state;
     mean_is(0.95, swing, STEPS, 1, 0.03);
 }
 
-/* A line rising by one a step lies decay / (1 - decay) steps before its exponential mean. Taken every eighth step it is
- * (8 d^8) / (1 - d^8) steps: 29.4 where it would be 32.3; either is within a stride of the other. */
+/* A line rising by one a step is decay / (1 - decay) steps ahead of its exponential mean. Taken every eighth step it is
+ * (8 d^8) / (1 - d^8) steps: 29.4 instead of 32.3; they differ by less than a stride. */
 static void mean_of_a_line_lags_by_its_length(void **state)
 {
     (void)state;
@@ -89,7 +89,7 @@ static void mean_of_a_line_lags_by_its_length(void **state)
     mean_is(decay, line, STEPS, STEPS - decay / (1 - decay), 8);
 }
 
-/* A run shorter than the stride has a mean too: of five steps, each takes it for as long as the fifth. */
+/* A run shorter than the stride has a mean, too: the fifth step updates it with the weight of all five. */
 static void the_last_steps_count(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Photographs under mixtures of light: sums of what was rendered, with the truth that goes with them. */
+/* Photographs under mixtures of light: sums of rendered images, and their ground truth. */
 #include "lab/train/mixture.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 #include "optics/orientation.h"
 #include "scratch.h"
 
-/* last: it claims the word fail */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -109,7 +109,7 @@ static void prepare(fixture *f, const train_mixture *m, const train_camera *lens
     assert_int_equal(train_prepare_any(&f->view, m, lens, vec3_make(0.5f, 0, -0.2f), &noise), OK);
 }
 
-/* What the network is shown back in radiance. */
+/* Decodes what the network sees back to radiance. */
 static float shown(const train_view *v, size_t value)
 {
     return v->image[value] * v->image[value];
@@ -148,7 +148,7 @@ static void a_photograph_is_the_sum_of_its_lights(void **state)
     free(raw);
 }
 
-/* The lamp that the truth speaks of, on the maps, as far as it is visible, gives the photograph: in any orientation. */
+/* The lamp of the ground truth, applied to the maps with its visibility, gives the photograph in any orientation. */
 static void the_truth_about_a_lamp_makes_the_photograph(void **state)
 {
     fixture *f = *state;
@@ -181,8 +181,8 @@ static void the_truth_about_a_lamp_makes_the_photograph(void **state)
                               .light = at,
                               .power = LIGHT_POWER * strength / (inverse * inverse)};
             float expected = shade_point(&in).y, found = shown(v, 3 * i + 1);
-            if (expected > 0.9f * MODEL_BRIGHTEST) continue;             /* the input ends there */
-            close += fabsf(found - expected) < 0.06f * expected + 0.01f; /* bounces come on top */
+            if (expected > 0.9f * MODEL_BRIGHTEST) continue;             /* the input is clipped there */
+            close += fabsf(found - expected) < 0.06f * expected + 0.01f; /* without bounces */
             all++;
         }
         total += all;
@@ -240,7 +240,7 @@ static void nobody_photographs_darkness(void **state)
     fixture *f = *state;
     train_view *v = &f->view;
     assert_int_equal(train_dataset_get(f->data, 0, 0, v), OK);
-    memset(v->lamps, 0, 16 * PIXELS * sizeof(float)); /* all of them behind it, and nothing else lit at night */
+    memset(v->lamps, 0, 16 * PIXELS * sizeof(float)); /* all lamps are behind the object, and there is no other light */
     memset(v->env, 0, 3 * PIXELS * sizeof(float));
     memset(v->sh, 0, 27 * sizeof(float));
     for (int i = 0; i < 200; i++) {
@@ -253,7 +253,7 @@ static void nobody_photographs_darkness(void **state)
     }
 }
 
-/* It once exposed by so much that black would show, and the lamp came out with a strength of 1e9. */
+/* Exposure was once so high that black became visible, and the lamp's strength was 1e9. */
 static void a_camera_exposes_for_what_is_lit(void **state)
 {
     fixture *f = *state;

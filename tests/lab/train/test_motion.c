@@ -7,7 +7,7 @@
 
 #include "lab/train/prepare.h"
 
-/* cmocka names a macro fail, so that it comes behind base/status.h */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -23,7 +23,7 @@ static vec3 times(const float m[3][3], vec3 v)
                      m[2][0] * v.x + m[2][1] * v.y + m[2][2] * v.z);
 }
 
-/* Pixels whose neighbours two steps away belong to the object as well. */
+/* Tells whether the pixel's neighbours two steps away belong to the object as well. */
 static bool is_inside(const train_view *v, int x, int y)
 {
     for (int k = 0; k < 25; k++)
@@ -49,7 +49,7 @@ static void turned_camera_sees_the_turned_sphere(void **state)
                 int i = y * SIZE + x;
                 vec3 p = camera_point(&eye, (float)x + 0.5f, (float)y + 0.5f, f->view.depth[i]);
                 vec3 out = vec3_sub(p, centre), n = vec3_of(f->view.normal + 3 * i);
-                /* a pixel is 0.018 wide here; between pixels the sphere of radius 0.32 lies at most 0.018²/8/0.32 above
+                /* a pixel is 0.018 wide here; between pixels the sphere of radius 0.32 is at most 0.018²/8/0.32 above
                  * the line, which near the rim is seen ten times as long */
                 assert_true(fabsf(vec3_length(out) - 0.32f) < 2e-3f);
                 assert_true(vec3_dot(n, vec3_normalize(out)) > 0.999f);
@@ -75,7 +75,7 @@ static float render_error(fixture *f)
     return error / (float)count;
 }
 
-/* The flash is at the lens, wherever that looks: moved maps must render to the moved picture. */
+/* The flash is at the lens, whatever the direction of view: moved maps must render to the moved picture. */
 static void moved_maps_render_to_the_moved_picture(void **state)
 {
     fixture *f = *state;
@@ -85,7 +85,7 @@ static void moved_maps_render_to_the_moved_picture(void **state)
         train_motion m = train_motion_draw(k % 2 ? &turning : &both, &r);
         assert_int_equal(train_dataset_get(f->data, (size_t)k % 3, 0, &f->view), OK);
         assert_int_equal(train_move(&f->view, &m), OK);
-        /* interpolation, seen most where the stripes of albedo meet a highlight; the picture's mean is above 0.5 */
+        /* interpolation, largest where the stripes of albedo meet a highlight; the picture's mean is above 0.5 */
         assert_true(render_error(f) < 0.005f);
     }
 }
@@ -130,7 +130,7 @@ static void turns_are_rotations_within_their_reach(void **unused)
                 float dot = m.turn[i][0] * m.turn[j][0] + m.turn[i][1] * m.turn[j][1] + m.turn[i][2] * m.turn[j][2];
                 assert_float_equal(dot, i == j, 1e-6f);
             }
-        /* three turns of 10 degrees about different axes make one of at most 30 */
+        /* three rotations of 10 degrees about different axes make one of at most 30 */
         assert_true(m.turn[0][0] + m.turn[1][1] + m.turn[2][2] >= 1 + 2 * cosf(0.524f));
         assert_true(fabsf(logf(m.distance)) <= 0.3f + 1e-6f);
     }

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "prepare_fixture.h"
 
-/* The flash and the frame look the same in all eight orientations, so the turned maps must render to the turned image.
- */
+/* Flash and frame are the same in all eight orientations, so that the turned maps must render to the turned image. */
 static void turned_maps_render_to_the_turned_image(void **state)
 {
     fixture *f = *state;
@@ -128,7 +127,7 @@ static void empty_folder_is_refused(void **state)
     scratch_remove(folder);
 }
 
-/* The fixture's samples with their environments. */
+/* Opens the fixture's samples with their environments. */
 static train_dataset *with_environments(fixture *f)
 {
     train_dataset *d;
@@ -141,7 +140,7 @@ static train_dataset *with_environments(fixture *f)
     return d;
 }
 
-/* Without the flash, the maps under the turned coefficients are the turned image: diffuse and highlights. */
+/* Without the flash, the maps under the turned coefficients give the turned image: diffuse and highlights. */
 static void turned_maps_reflect_the_turned_environment(void **state)
 {
     fixture *f = *state;
@@ -191,7 +190,7 @@ static void photograph_is_lit_by_both_and_targets_add_up(void **state)
         if (v->mask[i / 3] == 0) continue;
         assert_float_equal(v->image[i] * v->image[i], direct[i] + indirect[i] + 0.5f * env[i], 1e-4);
         assert_float_equal(v->reconstruction[i], v->direct[i] + v->indirect[i], 1e-6);
-        /* these surroundings are what their coefficients say: only bounces are left, within half floats' 4e-3 */
+        /* these environments are exactly their coefficients: only bounces are left, within half floats' 4e-3 */
         assert_float_equal(v->indirect[i], indirect[i], 4e-3);
         assert_true(v->direct[i] > fminf(direct[i], 1) + 0.02f);
         assert_true(v->relit[i] >= 0 && v->relit[i] <= 1);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What a camera does to the photograph that a sample becomes. */
+/* The camera's effects on the photograph of a sample. */
 #include "prepare_fixture.h"
 
 static const train_lighting at_the_camera = {.target = {0, 0, 0}};
@@ -73,7 +73,7 @@ static void camera_spoils_the_input_and_not_the_targets(void **state)
     free(clean);
 }
 
-/* Sample 0 photographed without noise under these faults. */
+/* Photographs sample 0 without noise with these faults. */
 static void photograph(fixture *f, const train_camera *lens)
 {
     rng r = rng_at(1, 2, 3);
@@ -116,7 +116,7 @@ static int count_ones(const float *mask)
     return ones;
 }
 
-/* Nothing is asked of the network where the outline took the object from it. */
+/* Pixels that the outline's error removed must not count in the losses. */
 static void outline_errors_are_one_pixel_wide(void **state)
 {
     fixture *f = *state;
@@ -139,7 +139,7 @@ static void outline_errors_are_one_pixel_wide(void **state)
     }
 }
 
-/* The pixel that a mask too large adds beside row 32, of which the object covers a quarter, is as dark as that. */
+/* A dilated mask adds a pixel beside row 32, of which the object covers a quarter; it must be as dark as that. */
 static void a_mask_too_large_shows_what_the_object_covers_in_part(void **state)
 {
     fixture *f = *state;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "train_fixture.h"
 
-/* begins: what the run begins from. */
+/* Trains a run that starts from the weights in `begins`. */
 static status train_beginning(const fixture *f, const char *name, train_options begins)
 {
     char *output = file_join(f->root, name);
@@ -24,7 +24,7 @@ static status train_from_shared(const fixture *f, const char *name, const char *
     return train_beginning(f, name, (train_options){.init_shared = weights});
 }
 
-/* Of curves.csv. */
+/* Returns the column of a loss in curves.csv. */
 static int column_of(const char *loss)
 {
     int i = 0;
@@ -43,8 +43,8 @@ static double value_in(const char *row, int column)
     return value;
 }
 
-/* A column of curves.csv (0: step) ends below this share of where it began: the first row is the mean of the first four
- * steps. */
+/* Asserts that a column of curves.csv (0: step) ends below this share of its first row, which is the mean of the first
+ * four steps. */
 static void loss_falls_to(const fixture *f, int column, double share)
 {
     size_t size;
@@ -72,7 +72,7 @@ static void losses_fall_on_two_samples(void **state)
     loss_falls_to(f, 4, 0.3);
 }
 
-/* Of the first row of curves.csv: the sum of all losses less what it should be of the losses beside it. */
+/* Returns the total loss in the first row of curves.csv minus the weighted sum of the losses in that row. */
 static double unexplained(const fixture *f, const char *run, double albedo_weight)
 {
     size_t size;
@@ -178,7 +178,7 @@ static void more_held_back_than_there_are_is_refused(void **state)
     assert_int_equal(train(f, "a", false, 0), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "validation_count"));
     char *output = file_join(f->root, "a");
-    assert_false(file_exists(output)); /* nor is a folder left behind */
+    assert_false(file_exists(output)); /* no folder is left behind */
     free(output);
 }
 

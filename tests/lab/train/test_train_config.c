@@ -6,7 +6,7 @@
 #include "lab/train/train_config.h"
 #include "nn/device.h"
 
-/* cmocka names a macro fail, so that it comes behind base/status.h */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -14,7 +14,7 @@
 
 #include <cmocka.h>
 
-/* malloc'ed: a run of configs/ as one text. */
+/* Returns a run of configs/ as one text, malloc'ed. */
 static char *shipped(void)
 {
     model_config m;
@@ -95,7 +95,7 @@ static void wrong_configurations_are_refused_by_key(void **unused)
     refuses("\"seed\": 1,", "\"seed\": 1, \"jpeg\": 0.5, \"jpeg\": 0.5,", "jpeg");
 }
 
-/* Checkpoints name the configuration they belong to: those of before these keys were known must go on fitting. */
+/* Checkpoints contain their configuration as text: those written before these keys existed must still match. */
 static void faults_left_out_are_none_and_stay_left_out(void **unused)
 {
     (void)unused;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Runs that go on: from checkpoints, with less memory, by a configuration in parts, and what is refused then. */
+/* Resumed runs: from checkpoints, with less memory, by a configuration in parts, and what is refused. */
 #include "train_fixture.h"
 
-/* Parameters, running statistics and both moments; the weights; the curves. */
+/* Asserts equal parameters, running statistics, moments, weights and curves. */
 static void same_run(const fixture *f, const char *a, const char *b)
 {
     static const char *const files[] = {"checkpoint.safetensors", "weights.safetensors", "curves.csv",
@@ -37,7 +37,7 @@ static void resumed_training_on_faulty_photographs_is_bit_identical(void **state
                        "\"distance_jitter\": 0.3, \"background_leak\": 0.5, \"outline_error\": 0.5, \"jpeg\": 0.5");
 }
 
-/* Long enough for the mean to have moved before the run stops and after. */
+/* The run is long enough for the mean to have changed before the stop and after. */
 static void resumed_training_with_a_mean_of_the_weights_is_bit_identical(void **state)
 {
     const fixture *f = *state;
@@ -48,7 +48,7 @@ static void resumed_training_with_a_mean_of_the_weights_is_bit_identical(void **
     same_run(f, "a", "b");
 }
 
-/* A run killed outright leaves rows behind its last checkpoint. */
+/* A run that is killed leaves rows after its last checkpoint. */
 static void rows_behind_the_checkpoint_are_dropped_on_resume(void **state)
 {
     const fixture *f = *state;
@@ -67,7 +67,7 @@ static void rows_behind_the_checkpoint_are_dropped_on_resume(void **state)
 
 static char blocked[600], aside[620];
 
-/* Nothing can be written to a file from the second step on. */
+/* Makes files unwritable from the second step on. */
 static int block_after_two_steps(void)
 {
     if (--steps_left) return 0;
@@ -76,7 +76,8 @@ static int block_after_two_steps(void)
     return 0;
 }
 
-/* What the last step leaves to do is done on resume, wherever the run ended: three steps, a checkpoint at each. */
+/* What remains to be done after the last step is done on resume, wherever the run ended: three steps, a checkpoint at
+ * each. */
 static void fail_at_the_end_and_resume(const fixture *f, int validation, const char *file)
 {
     write_experiment(f, &(experiment){6, 2, validation, "point", jitter, 0});
@@ -123,7 +124,7 @@ static void checkpoint_of_another_configuration_is_refused(void **state)
     assert_non_null(strstr(status_message(), "another \"presentations\""));
 }
 
-/* Writes the checkpoint anew with another value of one of its words. */
+/* Rewrites the checkpoint with another value of one of its metadata. */
 static void falsify_checkpoint(const char *path, const char *key, const char *value)
 {
     static const char *const KEYS[] = {"checkpoint", "config", "training",   "samples",
@@ -146,7 +147,7 @@ static void falsify_checkpoint(const char *path, const char *key, const char *va
     safetensors_close(file);
 }
 
-/* Steps times a batch must stay a number. */
+/* The number of steps times a batch must not overflow. */
 static void checkpoint_of_impossible_counts_is_refused(void **state)
 {
     static const char *const LIES[][2] = {
@@ -170,7 +171,7 @@ static void checkpoint_of_impossible_counts_is_refused(void **state)
     free(good);
 }
 
-/* How much memory samples may take and how often a checkpoint is written change nothing that comes of a run. */
+/* The memory for samples and the interval of checkpoints do not affect a run's result. */
 static void a_run_goes_on_with_less_memory(void **state)
 {
     const fixture *f = *state;
@@ -187,7 +188,7 @@ static void a_run_goes_on_with_less_memory(void **state)
     if (train(f, "a", true, 0) != OK) fail_msg("%s", status_message());
 }
 
-/* The one configuration as three files: its model, another training, and what makes that this one. */
+/* Writes the same configuration as three files: its model, another training, and the changes to that. */
 static void write_in_parts(const fixture *f)
 {
     size_t size;
@@ -206,7 +207,7 @@ static void write_in_parts(const fixture *f)
     free(text);
 }
 
-/* A checkpoint belongs to the run that was trained, wherever that was written. */
+/* A checkpoint belongs to the configuration, in however many files that is written. */
 static void a_run_goes_on_by_a_configuration_in_parts(void **state)
 {
     const fixture *f = *state;

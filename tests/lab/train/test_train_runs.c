@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The files of configs/: what each run trains is written down in a mark, as a base that is edited would change runs of
- * years ago with it, whose checkpoints then refuse to go on and whose cards tell what is no longer so. */
+/* The files of configs/: a hash of what each run trains is recorded here, as editing a base file would change old runs
+ * with it, whose checkpoints would then be refused and whose model cards would be wrong. */
 #include <glob.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -10,7 +10,7 @@
 #include "base/file.h"
 #include "lab/train/train_config.h"
 
-/* cmocka names a macro fail, so that it comes behind base/status.h */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -20,8 +20,8 @@
 
 #define CONFIGS MERLIN_SOURCE_DIR "/configs/"
 
-/* A mark is FNV-1a of the network and the training as checkpoints name them; those of the first 38 are of the files
- * that had everything in one. The number's type is not in it: "auto" is another one elsewhere. */
+/* Hashes are FNV-1a of the network and the training as checkpoints store them; those of the first 38 are of files that
+ * had everything in one. The number type is not included, as "auto" depends on the machine. */
 static const struct run {
     const char *name;
     uint64_t mark;
@@ -130,7 +130,7 @@ static void every_run_has_a_mark_and_can_be_measured(void **unused)
     globfree(&files);
 }
 
-/* merlin-point-deep.json is merlin-point when it was smaller. */
+/* merlin-point-deep.json is an earlier, smaller merlin-point. */
 static void every_network_can_be_read_and_has_its_files_name(void **unused)
 {
     (void)unused;

@@ -16,7 +16,7 @@
 #include "model/model.h"
 #include "nn/safetensors.h"
 
-/* cmocka names a macro fail, so that it comes behind base/status.h */
+/* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -42,7 +42,7 @@ typedef struct experiment {
     int minutes; /* between checkpoints */
 } experiment;
 
-/* A model of a few thousand parameters. */
+/* Writes the configuration of a model of a few thousand parameters. */
 static inline void write_experiment(const fixture *f, const experiment *e)
 {
     char text[2048];

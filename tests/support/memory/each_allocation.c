@@ -13,7 +13,7 @@
 #include "base/status.h"
 #include "failing_memory.h"
 
-/* after the project's header: its macro fail() would break the declaration of ours */
+/* last, as cmocka defines a macro named fail */
 #include <cmocka.h>
 
 /* ---- which allocations ---- */

@@ -26,18 +26,18 @@ static inline float noise_unit(uint32_t hash)
     return (float)(hash >> 8) * 0x1p-24f;
 }
 
-/* Gradient noise (Perlin 2002) in about [-1, 1], one feature a unit. */
+/* Returns gradient noise (Perlin 2002) in about [-1, 1], one feature a unit. */
 float noise_gradient(vec3 p, uint32_t seed);
 void noise_gradients(const lanes *p, uint32_t seed, float out[LANES]);
 
 /* Computes three independent gradient noises a point. */
 void noise_vectors(const lanes *p, uint32_t seed, lanes *out);
 
-/* Sum of octaves, each half as high and twice as fine, in about [-1, 1]. */
+/* Returns a sum of octaves, each half as high and twice as fine, in about [-1, 1]. */
 float noise_fbm(vec3 p, int octaves, uint32_t seed);
 void noise_fbms(const lanes *p, int octaves, uint32_t seed, float out[LANES]);
 
-/* Sum of absolute octaves, in about [0, 1]: creases and veins. */
+/* Returns a sum of absolute octaves, in about [0, 1]: creases and veins. */
 float noise_turbulence(vec3 p, int octaves, uint32_t seed);
 void noise_turbulences(const lanes *p, int octaves, uint32_t seed, float out[LANES]);
 
@@ -46,7 +46,7 @@ typedef struct noise_cell {
     uint32_t id;         /* hash of the nearest one */
 } noise_cell;
 
-/* Cellular noise (Worley 1996), one feature point a unit cube. */
+/* Returns cellular noise (Worley 1996), one feature point a unit cube. */
 noise_cell noise_cellular(vec3 p, uint32_t seed);
 
 typedef struct noise_cells {

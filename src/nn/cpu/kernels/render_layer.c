@@ -83,9 +83,8 @@ static inline shade_input pixel_of(const span *s, size_t i)
                          .power = s->power};
 }
 
-/* To [0, 1]; what is not a number becomes 0. */
-/* The loop bodies are functions of their own because gcc vectorizes a loop only if nothing declared inside it has its
- * address taken. */
+/* Renders a pixel, clipped to [0, 1]; NaN becomes 0. The loop bodies are functions of their own because gcc vectorizes
+ * a loop only if nothing declared inside it has its address taken. */
 static inline void render_pixel(const span *s, size_t i, float *y)
 {
     shade_input in = pixel_of(s, i);

@@ -8,8 +8,8 @@
 
 /* Creates a convolution or fully connected layer (a 1×1 convolution of 1×1 images), by oneDNN. */
 status conv_create(nn_step *step);
-/* The two halves of a convolution's backward pass, for timing them separately; gradients must be in the compute type.
- */
+/* Run the two halves of a convolution's backward pass, for timing them separately; gradients must be in the compute
+ * type. */
 status conv_backward_data(nn_step *step);
 status conv_backward_weights(nn_step *step);
 
