@@ -18,7 +18,7 @@ typedef struct memory_trial {
 
 /* Asserts that each failure is told as lack of memory, in words, or is none: the work may do without what failed. Every
  * way through the program to an allocation is taken that no earlier trial has taken, where it is first come by and
- * where last; there one alone fails, then all that follow, too. In the end the work succeeds as ever. */
+ * where last; at each third all that follow fail, too. In the end the work succeeds as ever. */
 void each_allocation_fails(const memory_trial *trial);
 
 #endif

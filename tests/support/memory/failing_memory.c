@@ -52,21 +52,25 @@ void failing_memory_of_libraries(bool theirs_too)
     own_alone = !theirs_too;
 }
 
+static bool is_in(const void *caller, range r)
+{
+    return (uintptr_t)caller >= r.first && (uintptr_t)caller < r.end;
+}
+
 static bool counts(const void *caller)
 {
-    uintptr_t at = (uintptr_t)caller;
     for (int i = 0; i < counted_count; i++)
-        if (at >= counted[i].first && at < counted[i].end) return true;
+        if (is_in(caller, counted[i])) return true;
     return false;
 }
 
 /* ---- ways through the program ---- */
 
-/* Frames that are looked through; of them those of the program and of the libraries that count, the innermost first,
- * make the way. The first ones are this file's own. */
-enum { DEEP = 20, WAY = 6, OWN = 3, MOST_WAYS = 1 << 18 };
+/* Frames that are looked through. The innermost ones of the program and of the libraries that count make the way, so
+ * many of each; the first ones are this file's own. */
+enum { DEEP = 20, OWN = 3, OF_PROGRAM = 3, OF_LIBRARIES = 2, MOST_WAYS = 1 << 18 };
 typedef struct way {
-    const void *at[WAY];
+    const void *at[OF_LIBRARIES + OF_PROGRAM];
 } way;
 static way *ways;
 
@@ -74,9 +78,14 @@ static __attribute__((noinline)) void keep_way(size_t n)
 {
     if (n >= MOST_WAYS) return;
     void *frames[DEEP];
-    int all = backtrace(frames, DEEP), found = 0;
-    for (int i = OWN; i < all && found < WAY; i++)
-        if (counts(frames[i])) ways[n].at[found++] = frames[i];
+    int all = backtrace(frames, DEEP), of_program = 0, of_libraries = 0;
+    for (int i = OWN; i < all && of_program < OF_PROGRAM; i++) {
+        const bool own = is_in(frames[i], counted[0]);
+        if (own)
+            ways[n].at[OF_LIBRARIES + of_program++] = frames[i];
+        else if (of_libraries < OF_LIBRARIES && counts(frames[i]))
+            ways[n].at[of_libraries++] = frames[i];
+    }
 }
 
 /* FNV-1a */
@@ -84,16 +93,16 @@ uint64_t failing_memory_way(size_t n)
 {
     uint64_t sum = 0xcbf29ce484222325;
     if (n >= MOST_WAYS) return n;
-    for (int i = 0; i < WAY; i++)
+    for (int i = 0; i < OF_LIBRARIES + OF_PROGRAM; i++)
         sum = (sum ^ (uintptr_t)ways[n].at[i]) * 0x100000001b3;
     return sum;
 }
 
 void failing_memory_print_way(size_t n)
 {
-    for (int i = 0; n < MOST_WAYS && i < WAY && ways[n].at[i]; i++) {
+    for (int i = 0; n < MOST_WAYS && i < OF_LIBRARIES + OF_PROGRAM; i++) {
         Dl_info about;
-        if (!dladdr(ways[n].at[i], &about)) continue;
+        if (!ways[n].at[i] || !dladdr(ways[n].at[i], &about)) continue;
         fprintf(stderr, " %s+%#zx", strrchr(about.dli_fname, '/') ? strrchr(about.dli_fname, '/') + 1 : about.dli_fname,
                 (size_t)((const char *)ways[n].at[i] - (const char *)about.dli_fbase - 1));
     }
