@@ -32,6 +32,7 @@
 #define MERLIN_MERLIN_H
 
 #include <merlin/camera.h>
+#include <merlin/calibrate.h>
 #include <merlin/estimate.h>
 #include <merlin/image.h>
 #include <merlin/maps.h>

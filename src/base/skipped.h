@@ -16,16 +16,11 @@
 
 #include "base/status.h"
 #include "base/warnings.h"
+#include "merlin/files.h"
 
-typedef struct skipped_file {
-    char *name; /* name within its folder */
-    char *why;  /* reason, without a full stop */
-} skipped_file;
-
-typedef struct skipped_files {
-    skipped_file *at;
-    size_t count;
-} skipped_files;
+/* The library's own list, by short names for the inside. */
+typedef merlin_skipped_file skipped_file;
+typedef merlin_skipped_files skipped_files;
 
 /* Adds a file; both texts are copied. */
 status skipped_add(skipped_files *list, const char *name, const char *why);

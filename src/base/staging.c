@@ -143,10 +143,11 @@ static status add_written(staged_files *files, const char *path)
     return OK;
 }
 
-void staged_files_free(staged_files *files)
+void merlin_files_free(merlin_files *files)
 {
+    if (!files) return;
     file_list_free(files->at, files->count);
-    *files = (staged_files){0};
+    *files = (merlin_files){0};
 }
 
 /* ---- into place ---- */

@@ -14,9 +14,9 @@
 
 #include <limits.h>
 #include <stddef.h>
-#include <stdint.h>
 
 #include "base/status.h"
+#include "merlin/files.h"
 
 typedef struct staging staging;
 
@@ -26,13 +26,8 @@ enum { STAGING_MOST_INPUTS = 4 };
 status staging_begin(const char *folder, const char *const *inputs, staging **out);
 /* Composes the path at which to write the future folder/name, and returns it. May be called from any thread. */
 const char *staging_path(const staging *t, const char *name, char path[PATH_MAX]);
-/* Paths of the files written, sorted; zero-initialized it is empty. */
-typedef struct staged_files {
-    char **at;
-    size_t count;
-    uint64_t bytes; /* sum of their sizes */
-} staged_files;
-void staged_files_free(staged_files *files);
+/* The library's own list of what was written, by a short name for the inside. */
+typedef merlin_files staged_files;
 
 /* Moves all files into the folder, replacing those of the same names, adds their paths to *written unless that is NULL,
  * and frees t. MERLIN_CANNOT_WRITE, with nothing moved, if a folder or one of the inputs is in the way. */

@@ -260,7 +260,7 @@ static status take_apart(const request *r, const photo_job *job, merlin_image *p
     laps->write = lap(&clock);
     laps->total = laps->start + laps->model + laps->compile + laps->read + laps->mask + clock - began;
     if (s == OK) s = announce(r, job, &maps, &written, laps);
-    staged_files_free(&written);
+    merlin_files_free(&written);
     merlin_maps_free(&maps);
     return s;
 }

@@ -5,7 +5,7 @@
 #include "base/lights/light_list.h"
 #include "base/rng.h"
 #include "capture_files.h"
-#include "stereo/calibrate/calibrate.h"
+#include "merlin/calibrate.h"
 #include "stereo/methods/solve.h"
 
 enum { SIZE = 160, LIGHTS = 7 };
@@ -97,21 +97,21 @@ static void write_mask(void)
 
 /* One pixel of the circle or the highlight is 1 / RADIUS = 1 degree of the normal at the middle of the ball and 2 of a
  * mirrored light; what is asked for is half a pixel. */
-static void assert_lights_found(pst_ball ball, bool from_mask, float pixels, float most_degrees)
+static void assert_lights_found(merlin_ball ball, bool from_mask, float pixels, float most_degrees)
 {
-    pst_calibration c;
-    assert_int_equal(pst_calibrate_sphere(scratch, &(pst_calibrate_options){.ball = ball}, &c), OK);
+    merlin_calibration c;
+    assert_int_equal(merlin_calibrate(scratch, &(merlin_calibrate_params){.ball = ball}, &c), OK);
     assert_int_equal(c.count, LIGHTS);
     assert_int_equal(c.from_mask, from_mask);
-    if (c.doubts.count) fail_msg("%s: %s", c.doubts.at[0].code, c.doubts.at[0].message);
+    if (c.warnings.count) fail_msg("%s: %s", c.warnings.at[0].code, c.warnings.at[0].message);
     assert_float_equal(c.circle.x, CENTER_X, pixels);
     assert_float_equal(c.circle.y, CENTER_Y, pixels);
     assert_float_equal(c.circle.radius, RADIUS, pixels);
     for (int i = 0; i < LIGHTS; i++) {
-        float off = degrees(c.direction[i], light(i));
+        float off = degrees(vec3_of(c.lights[i].direction), light(i));
         if (off > most_degrees) fail_msg("light %d is off by %.2f degrees", i, (double)off);
     }
-    pst_calibration_free(&c);
+    merlin_calibration_free(&c);
 }
 
 static void a_chrome_ball_tells_its_lights(void **state)
@@ -181,23 +181,22 @@ static void a_ball_beside_the_axis_tells_its_lights(void **state)
         assert_int_equal(img_write_png(scratch_path(name), &p, IMG_LINEAR16), OK);
     }
     img_free(&p);
-    pst_calibration c;
+    merlin_calibration c;
     assert_int_equal(
-        pst_calibrate_sphere(scratch, &(pst_calibrate_options){.ball = MERLIN_MATTE_BALL, .field_of_view = 50}, &c),
-        OK);
+        merlin_calibrate(scratch, &(merlin_calibrate_params){.ball = MERLIN_MATTE_BALL, .field_of_view = 50}, &c), OK);
     for (int i = 0; i < LIGHTS; i++)
         /* half a pixel of its radius of 40; 2 to 4 as a circle about the ball's center */
-        if (degrees(c.direction[i], light(i)) > 0.7f)
-            fail_msg("light %d is off by %.2f degrees", i, (double)degrees(c.direction[i], light(i)));
-    pst_calibration_free(&c);
+        if (degrees(vec3_of(c.lights[i].direction), light(i)) > 0.7f)
+            fail_msg("light %d is off by %.2f degrees", i, (double)degrees(vec3_of(c.lights[i].direction), light(i)));
+    merlin_calibration_free(&c);
 }
 
-static void assert_doubted(pst_ball ball, const char *code)
+static void assert_doubted(merlin_ball ball, const char *code)
 {
-    pst_calibration c;
-    assert_int_equal(pst_calibrate_sphere(scratch, &(pst_calibrate_options){.ball = ball}, &c), OK);
-    if (!warnings_find(&c.doubts, code)) fail_msg("no word of %s", code);
-    pst_calibration_free(&c);
+    merlin_calibration c;
+    assert_int_equal(merlin_calibrate(scratch, &(merlin_calibrate_params){.ball = ball}, &c), OK);
+    if (!warnings_find(&c.warnings, code)) fail_msg("no word of %s", code);
+    merlin_calibration_free(&c);
 }
 
 static void what_shades_like_no_matte_ball_is_told(void **state)
@@ -238,17 +237,17 @@ static void what_was_found_is_written(void **state)
 {
     (void)state;
     write_balls(chrome, IMG_SRGB8);
-    pst_calibration c;
-    assert_int_equal(pst_calibrate_sphere(scratch, &(pst_calibrate_options){.ball = MERLIN_CHROME_BALL}, &c), OK);
-    assert_int_equal(pst_calibration_write(&c, scratch_path("lights.txt"), scratch_path("calibration.png")), OK);
+    merlin_calibration c;
+    assert_int_equal(merlin_calibrate(scratch, &(merlin_calibrate_params){.ball = MERLIN_CHROME_BALL}, &c), OK);
+    assert_int_equal(merlin_calibration_write(&c, scratch, NULL), OK);
     light_list list;
     assert_int_equal(light_list_read(scratch_path("lights.txt"), &list), OK);
     assert_int_equal(list.count, LIGHTS);
     /* six decimals are written */
-    assert_float_equal(vec3_length(vec3_sub(list.at[3], c.direction[3])), 0, 3e-6);
+    assert_float_equal(vec3_length(vec3_sub(list.at[3], vec3_of(c.lights[3].direction))), 0, 3e-6);
     assert_true(file_exists(scratch_path("calibration.png")));
     light_list_free(&list);
-    pst_calibration_free(&c);
+    merlin_calibration_free(&c);
     /* and the folder is a capture now, its own picture left out */
     merlin_capture capture;
     assert_int_equal(pst_capture_read(scratch, NULL, &capture), OK);
@@ -259,24 +258,24 @@ static void what_was_found_is_written(void **state)
 static void pictures_without_a_ball_or_its_light_are_refused(void **state)
 {
     (void)state;
-    pst_calibrate_options options = {.ball = MERLIN_CHROME_BALL};
-    pst_calibration c;
+    merlin_calibrate_params options = {.ball = MERLIN_CHROME_BALL};
+    merlin_calibration c;
     for (int i = 0; i < 3; i++)
         write_flat((const char *[]){"0.png", "1.png", "2.png"}[i], 64, 64, 3, 0.5f, IMG_LINEAR16);
-    assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), MERLIN_BAD_INPUT);
+    assert_int_equal(merlin_calibrate(scratch, &options, &c), MERLIN_BAD_INPUT);
     assert_says("no ball is seen");
     scratch_close(state);
     scratch_open(state);
     write_balls(chrome, IMG_LINEAR16);
     write_flat("99.png", SIZE, SIZE, 1, 0, IMG_LINEAR16);
-    assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), MERLIN_BAD_INPUT);
+    assert_int_equal(merlin_calibrate(scratch, &options, &c), MERLIN_BAD_INPUT);
     assert_says("99.png: the ball found at 83, 77 with radius 5"); /* 58.6, and it is not rendered there to a pixel */
     assert_says("no highlight");
     write_mask();
-    assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), MERLIN_BAD_INPUT);
+    assert_int_equal(merlin_calibrate(scratch, &options, &c), MERLIN_BAD_INPUT);
     assert_says("99.png: no highlight");
     options.ball = MERLIN_MATTE_BALL;
-    assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), MERLIN_BAD_INPUT);
+    assert_int_equal(merlin_calibrate(scratch, &options, &c), MERLIN_BAD_INPUT);
     assert_says("99.png: the ball is not lit");
 }
 
@@ -301,18 +300,18 @@ static void write_failed_flash(const char *name)
 static void a_highlight_that_does_not_stand_out_is_refused(void **state)
 {
     (void)state;
-    pst_calibrate_options options = {.ball = MERLIN_CHROME_BALL};
-    pst_calibration c;
+    merlin_calibrate_params options = {.ball = MERLIN_CHROME_BALL};
+    merlin_calibration c;
     write_balls(chrome, IMG_LINEAR16);
     write_failed_flash("99.png");
-    assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), MERLIN_BAD_INPUT);
+    assert_int_equal(merlin_calibrate(scratch, &options, &c), MERLIN_BAD_INPUT);
     assert_says("99.png");
     assert_says("no highlight on the ball stands out");
     scratch_close(state);
     scratch_open(state);
     write_balls(chrome_of_two_lamps, IMG_LINEAR16);
     write_mask();
-    assert_int_equal(pst_calibrate_sphere(scratch, &options, &c), MERLIN_BAD_INPUT);
+    assert_int_equal(merlin_calibrate(scratch, &options, &c), MERLIN_BAD_INPUT);
     assert_says("no highlight on the ball stands out");
 }
 
@@ -322,13 +321,13 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static float median_off(const pst_calibration *c, const light_list *truth)
+static float median_off(const merlin_calibration *c, const light_list *truth)
 {
     float off[64];
     assert_int_equal(c->count, truth->count);
     assert_true(c->count <= 64);
     for (int i = 0; i < c->count; i++)
-        off[i] = degrees(c->direction[i], truth->at[i]);
+        off[i] = degrees(vec3_of(c->lights[i].direction), truth->at[i]);
     qsort(off, (size_t)c->count, sizeof *off, ascending);
     return 0.5f * (off[c->count / 2] + off[(c->count - 1) / 2]);
 }
@@ -348,13 +347,13 @@ static void real_balls_agree_with_their_published_lights(void **state)
     assert_int_equal(light_list_read(lights, &truth), OK);
     for (int i = 0; i < 2; i++) {
         char *folder = file_join(where, names[i]);
-        pst_calibrate_options options = {.ball = i == 0 ? MERLIN_CHROME_BALL : MERLIN_MATTE_BALL, .linear = true};
-        pst_calibration c;
-        assert_int_equal(pst_calibrate_sphere(folder, &options, &c), OK);
+        merlin_calibrate_params options = {.ball = i == 0 ? MERLIN_CHROME_BALL : MERLIN_MATTE_BALL, .linear = true};
+        merlin_calibration c;
+        assert_int_equal(merlin_calibrate(folder, &options, &c), OK);
         float off = median_off(&c, &truth);
         print_message("%s: median %.2f degrees\n", names[i], (double)off);
         assert_true(off < 3); /* the published directions' own error is about as large: both balls agree better */
-        pst_calibration_free(&c);
+        merlin_calibration_free(&c);
         free(folder);
     }
     light_list_free(&truth);
@@ -362,7 +361,7 @@ static void real_balls_agree_with_their_published_lights(void **state)
 }
 
 /* Mean angle to the sphere that the circle is the outline of. */
-static double ball_angle(const merlin_capture *capture, const pst_circle *ball, merlin_stereo_method method)
+static double ball_angle(const merlin_capture *capture, const merlin_circle *ball, merlin_stereo_method method)
 {
     merlin_surface found;
     assert_int_equal(pst_solve(capture, &(merlin_stereo_params){.method = method}, &found), OK);
@@ -392,10 +391,10 @@ static void a_real_matte_ball_comes_out_round(void **state)
         skip();
         return;
     }
-    pst_calibration c;
-    pst_calibrate_options options = {.ball = MERLIN_MATTE_BALL, .linear = true};
-    assert_int_equal(pst_calibrate_sphere(folder, &options, &c), OK);
-    assert_int_equal(pst_calibration_write(&c, scratch_path("lights.txt"), scratch_path("calibration.png")), OK);
+    merlin_calibration c;
+    merlin_calibrate_params options = {.ball = MERLIN_MATTE_BALL, .linear = true};
+    assert_int_equal(merlin_calibrate(folder, &options, &c), OK);
+    assert_int_equal(merlin_calibration_write(&c, scratch, NULL), OK);
     char *lights[] = {file_join(scratch, "lights.txt"), file_join(where, "lights.txt")};
     for (int i = 0; i < 2; i++) {
         merlin_capture capture;
@@ -411,13 +410,50 @@ static void a_real_matte_ball_comes_out_round(void **state)
         pst_capture_free(&capture);
         free(lights[i]);
     }
-    pst_calibration_free(&c);
+    merlin_calibration_free(&c);
     free(folder);
+}
+
+static void wrong_use_of_a_calibration_is_named(void **state)
+{
+    (void)state;
+    const merlin_calibrate_params wide = {.field_of_view = 200}, cube = {.ball = (merlin_ball)7}, usual = {0};
+    merlin_calibration c;
+    assert_int_equal(merlin_calibrate(scratch, &wide, &c), MERLIN_WRONG_USE);
+    assert_says("field of view");
+    assert_int_equal(merlin_calibrate(scratch, &cube, &c), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_calibrate(scratch, NULL, &c), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_calibrate(scratch_path("nowhere"), &usual, &c), MERLIN_BAD_INPUT);
+    assert_null(c.lights);
+    assert_int_equal(merlin_calibration_write(&c, scratch_path("lights"), NULL), MERLIN_WRONG_USE);
+    assert_false(file_exists(scratch_path("lights")));
+    merlin_calibration_free(&c);
+    merlin_calibration_free(NULL);
+}
+
+static void both_files_are_written_or_none(void **state)
+{
+    (void)state;
+    write_balls(chrome, IMG_SRGB8);
+    const merlin_calibrate_params mirror = {.ball = MERLIN_CHROME_BALL};
+    merlin_calibration c;
+    merlin_files written = {0};
+    assert_int_equal(merlin_calibrate(scratch, &mirror, &c), OK);
+    assert_int_equal(merlin_calibration_write(&c, scratch_path("lights"), &written), OK);
+    assert_int_equal(written.count, 2);
+    assert_true(file_exists(written.at[0]) && file_exists(written.at[1]) && written.bytes > 1000);
+    merlin_files_free(&written);
+    assert_int_equal(file_make_folder(scratch_path("taken/lights.txt")), OK);
+    assert_int_equal(merlin_calibration_write(&c, scratch_path("taken"), NULL), MERLIN_CANNOT_WRITE);
+    assert_false(file_exists(scratch_path("taken/calibration.png")));
+    merlin_calibration_free(&c);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        in_scratch(wrong_use_of_a_calibration_is_named),
+        in_scratch(both_files_are_written_or_none),
         in_scratch(a_chrome_ball_tells_its_lights),
         in_scratch(a_matte_ball_tells_its_lights_in_spite_of_a_highlight),
         in_scratch(a_matte_ball_tells_its_lights_in_a_lit_room),

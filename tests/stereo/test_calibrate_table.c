@@ -1,13 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /* Balls on a table, which a mirror ball's rim mirrors: the circle that is seen best is not always the outline. */
+#include "base/vec.h"
+#include "base/warnings.h"
 #include "capture_files.h"
-#include "stereo/calibrate/calibrate.h"
+#include "image/image.h"
+#include "merlin/calibrate.h"
 
 enum { WIDTH = 200, HEIGHT = 150, LIGHTS = 8 };
 
 typedef struct scene {
     float x, y, radius; /* of the ball */
-    pst_ball ball;
+    merlin_ball ball;
     float table, room; /* radiance of a lit table, and of what is before the ball */
     float grain;       /* of the table */
     float end;         /* of the table, in the ball's radii from its middle; 0: endless */
@@ -75,25 +78,25 @@ static void write_scene(const scene *s)
 /* At half a pixel of a radius of 40 a mirrored light is 1.4 degrees off. */
 static void assert_found(const scene *s, const char *doubt)
 {
-    pst_calibration c;
+    merlin_calibration c;
     write_scene(s);
-    if (pst_calibrate_sphere(scratch, &(pst_calibrate_options){.ball = s->ball}, &c) != OK)
+    if (merlin_calibrate(scratch, &(merlin_calibrate_params){.ball = s->ball}, &c) != OK)
         fail_msg("%s", status_message());
     print_message("%.1f %.1f %.1f: found %.1f %.1f %.1f, %s\n", (double)s->x, (double)s->y, (double)s->radius,
                   (double)c.circle.x, (double)c.circle.y, (double)c.circle.radius,
-                  c.doubts.count ? c.doubts.at[0].code : "no doubt");
+                  c.warnings.count ? c.warnings.at[0].code : "no doubt");
     assert_float_equal(c.circle.radius, s->radius, 0.8);
     assert_float_equal(c.circle.x, s->x, 0.8);
     assert_float_equal(c.circle.y, s->y, 0.8);
     if (doubt)
-        assert_non_null(warnings_find(&c.doubts, doubt));
+        assert_non_null(warnings_find(&c.warnings, doubt));
     else
-        assert_int_equal(c.doubts.count, 0);
+        assert_int_equal(c.warnings.count, 0);
     for (int k = 0; k < LIGHTS; k++) {
-        float off = 57.29578f * acosf(fminf(vec3_dot(c.direction[k], light_of(k)), 1));
+        float off = 57.29578f * acosf(fminf(vec3_dot(vec3_of(c.lights[k].direction), light_of(k)), 1));
         if (off > 3) fail_msg("light %d is off by %.1f degrees", k, (double)off);
     }
-    pst_calibration_free(&c);
+    merlin_calibration_free(&c);
 }
 
 static const scene plain = {

@@ -456,7 +456,7 @@ static status relight(const request *r, const char *output)
     if (s == OK) s = to_standard_output(r) ? relight_print(&job, &result) : relight_output(&job, &result);
     stage_bar_end(&bar);
     if (s == OK) s = announce(r, &job, &result, clock_seconds() - began);
-    staged_files_free(&result.files);
+    merlin_files_free(&result.files);
     merlin_maps_free(&maps);
     merlin_model_close(job.model);
     merlin_environment_free(environment);

@@ -290,7 +290,7 @@ static status work(request *r, const char *output, cJSON *report)
     }
     stage_bar_end(&bar);
     if (s == OK) s = announce(r, output, &result, report, &written, clock_seconds() - began);
-    staged_files_free(&written);
+    merlin_files_free(&written);
     stereo_result_free(&result);
     return s == MERLIN_STOPPED ? fail(s, "interrupted; nothing was written to %s", output) : s;
 }

@@ -6,7 +6,7 @@
 
 #include "base/json/json_put.h"
 #include "base/progress.h"
-#include "base/staging.h"
+#include "base/skipped.h"
 #include "base/text/report.h"
 #include "cli/check_replaced.h"
 #include "cli/stage_bar.h"
@@ -14,7 +14,7 @@
 #include "command/cli.h"
 #include "command/json_line.h"
 #include "command/options.h"
-#include "stereo/calibrate/calibrate.h"
+#include "merlin/calibrate.h"
 
 static const char help[] =
     "usage: merlin stereo calibrate --sphere chrome|matte DIR [options]\n\n"
@@ -35,8 +35,8 @@ static const char help[] =
 
 typedef struct request {
     const char *input, *output;
-    pst_calibrate_options options;
-    bool chosen, json, quiet, help;
+    merlin_calibrate_params options;
+    bool chosen, linear, json, quiet, help;
 } request;
 
 static status take_ball(const char *text, void *into)
@@ -57,7 +57,7 @@ static status parse(int *argc, char ***argv, request *r)
     const cli_option options[] = {
         {"sphere", .take = take_ball, .into = r},
         {"mask", .text = &r->options.mask},
-        {"linear", .flag = &r->options.linear},
+        {"linear", .flag = &r->linear},
         {"fov", .real = &r->options.field_of_view, .low = 1, .high = 170},
         {"output", 'o', .folder = &r->output},
         {"json", .flag = &r->json},
@@ -75,9 +75,9 @@ static status parse(int *argc, char ***argv, request *r)
     return OK;
 }
 
-static status print_json(const request *r, const pst_calibration *c, const staged_files *written, double seconds)
+static status print_json(const request *r, const merlin_calibration *c, const staged_files *written, double seconds)
 {
-    warnings all = c->doubts;
+    warnings all = c->warnings;
     skipped_warn(&c->skipped, &all);
     cJSON *report = report_begin(&all);
     if (c->skipped.count) skipped_json(&c->skipped, r->input, json_put_array(report, "skipped"));
@@ -90,8 +90,8 @@ static status print_json(const request *r, const pst_calibration *c, const stage
     json_put_bool(report, "from_mask", c->from_mask);
     cJSON *directions = json_put_array(report, "directions");
     for (int i = 0; i < c->count; i++) {
-        vec3 d = c->direction[i];
-        json_append(directions, cJSON_CreateDoubleArray((const double[]){(double)d.x, (double)d.y, (double)d.z}, 3));
+        const float *d = c->lights[i].direction;
+        json_append(directions, cJSON_CreateDoubleArray((const double[]){(double)d[0], (double)d[1], (double)d[2]}, 3));
     }
     json_put_number(report, "seconds_total", seconds);
     status s = json_line_print(report);
@@ -99,7 +99,7 @@ static status print_json(const request *r, const pst_calibration *c, const stage
     return s;
 }
 
-static status announce(const request *r, const pst_calibration *c, const staged_files *written, double seconds)
+static status announce(const request *r, const merlin_calibration *c, const staged_files *written, double seconds)
 {
     if (r->json) return print_json(r, c, written, seconds);
     if (!r->quiet)
@@ -114,43 +114,34 @@ static status interrupted(const request *r)
     return fail(MERLIN_STOPPED, "interrupted; nothing was written to %s", r->output);
 }
 
-static status write_files(const request *r, const pst_calibration *c, staged_files *written)
-{
-    const char *const inputs[STAGING_MOST_INPUTS] = {r->options.mask};
-    staging *t;
-    status s = staging_begin(r->output, inputs, &t);
-    if (s != OK) return s;
-    char lights[PATH_MAX], picture[PATH_MAX];
-    s = pst_calibration_write(c, staging_path(t, "lights.txt", lights), staging_path(t, "calibration.png", picture));
-    if (s == OK && cli_interrupted()) s = interrupted(r);
-    return s == OK ? staging_commit(t, written) : staging_abort(t, s);
-}
-
 static status run(request *r)
 {
     double began = clock_seconds();
     status s = check_list_replaced(r->output);
     if (s != OK) return s;
-    pst_calibration c;
+    merlin_calibration c;
     staged_files written = {0};
     stage_bar bar;
     stage_bar_begin(&bar, r->quiet);
     stage_bar_plan(&bar, (const stage_cost[]){{"reading", 1}}, 1);
     const watch shown = stage_bar_watch(&bar);
-    r->options.watch = &shown;
-    s = pst_calibrate_sphere(r->input, &r->options, &c);
-    r->options.watch = NULL; /* it ends with this function */
+    r->options.linear = r->linear;
+    r->options.progress = shown.tell;
+    r->options.progress_context = shown.context;
+    r->options.stop = shown.stop;
+    s = merlin_calibrate(r->input, &r->options, &c);
     stage_bar_end(&bar);
     if (s == MERLIN_STOPPED) return interrupted(r);
     if (s != OK) return s;
-    s = write_files(r, &c, &written);
+    if (cli_interrupted()) s = interrupted(r);
+    if (s == OK) s = merlin_calibration_write(&c, r->output, &written);
     if (s == OK) s = announce(r, &c, &written, clock_seconds() - began);
     if (s == OK && !r->quiet) {
-        warnings_print(&c.doubts, "stereo calibrate", r->input, 3);
+        warnings_print(&c.warnings, "stereo calibrate", r->input, 3);
         skipped_print(&c.skipped, "stereo calibrate", r->input);
     }
-    staged_files_free(&written);
-    pst_calibration_free(&c);
+    merlin_files_free(&written);
+    merlin_calibration_free(&c);
     return s;
 }
 

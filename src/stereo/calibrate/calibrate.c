@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-#include "stereo/calibrate/calibrate.h"
-#include "base/number.h"
+#include "merlin/calibrate.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "base/api_needs.h"
+#include "base/number.h"
 #include "stereo/calibrate/calibrate_parts.h"
 #include "stereo/capture/capture_parts.h"
 #include "stereo/doubts/doubts.h"
@@ -91,7 +92,7 @@ static status find_darkest(const merlin_capture *c, img *out)
     return s;
 }
 
-static status search_outlines(const merlin_capture *c, pst_ball ball, const img *picture, ball_outlines *out)
+static status search_outlines(const merlin_capture *c, merlin_ball ball, const img *picture, ball_outlines *out)
 {
     img darkest = {0};
     status s = find_darkest(c, &darkest);
@@ -101,8 +102,8 @@ static status search_outlines(const merlin_capture *c, pst_ball ball, const img 
 }
 
 /* The outline of the mask, or the picture to search in, and what may be outlines there. */
-static status find_outlines(const char *folder, const pst_calibrate_options *options, const merlin_capture *c,
-                            pst_calibration *out, img *picture, ball_outlines *outlines)
+static status find_outlines(const char *folder, const merlin_calibrate_params *options, const merlin_capture *c,
+                            merlin_calibration *out, img *picture, ball_outlines *outlines)
 {
     char *mask;
     bool found = false;
@@ -118,7 +119,7 @@ static status find_outlines(const char *folder, const pst_calibrate_options *opt
     if (s == OK && outlines->count == 0)
         s = mask ? fail(MERLIN_BAD_INPUT, "the mask %s is not round", mask)
                  : fail(MERLIN_BAD_INPUT, "no ball is seen in the pictures of %s; give its outline as a mask", folder);
-    free(mask);
+    out->mask_file = mask;
     return s;
 }
 
@@ -133,7 +134,7 @@ static void find_constant(const merlin_capture *c, img *constant)
 }
 
 /* What a picture has beyond the constant; what is clipped stays that. */
-static status take_picture(const merlin_capture *c, int i, pst_ball ball, const img *constant, img *out)
+static status take_picture(const merlin_capture *c, int i, merlin_ball ball, const img *constant, img *out)
 {
     status s = img_new(out, c->width, c->height, 1);
     for (size_t p = 0; p < pixels_of(c) && s == OK; p++) {
@@ -146,7 +147,7 @@ static status take_picture(const merlin_capture *c, int i, pst_ball ball, const 
 
 /* What a room adds to every picture of a matte ball, by the sides that the lights found so far do not reach: the median
  * over pictures, for where a light is beside the camera no such side is seen. */
-static status find_room(const merlin_capture *c, const ball_view *view, const pst_calibration *found, img *constant)
+static status find_room(const merlin_capture *c, const ball_view *view, const merlin_calibration *found, img *constant)
 {
     float *level = malloc((size_t)c->count * sizeof *level);
     if (!level) return fail(MERLIN_NO_MEMORY, "no memory for a room's light");
@@ -155,7 +156,7 @@ static status find_room(const merlin_capture *c, const ball_view *view, const ps
     for (int i = 0; i < c->count && s == OK; i++) {
         img picture;
         s = take_picture(c, i, MERLIN_MATTE_BALL, constant, &picture);
-        if (s == OK) count += ball_dark_level(&picture, view, found->direction[i], &level[count]);
+        if (s == OK) count += ball_dark_level(&picture, view, vec3_of(found->lights[i].direction), &level[count]);
         img_free(&picture);
     }
     qsort(level, count, sizeof *level, number_ascending);
@@ -166,21 +167,23 @@ static status find_room(const merlin_capture *c, const ball_view *view, const ps
 }
 
 static status find_light(const merlin_capture *c, int i, const img *constant, const ball_view *view,
-                         pst_calibration *out)
+                         merlin_calibration *out)
 {
     img picture;
     status s = take_picture(c, i, out->ball, constant, &picture);
     if (s != OK) return s;
-    s = out->ball == MERLIN_CHROME_BALL ? ball_mirror_light(&picture, view, &out->highlight[i], &out->direction[i])
-                                        : ball_shading_light(&picture, view, &out->residual[i], &out->direction[i]);
+    vec3 direction = {0, 0, 0};
+    s = out->ball == MERLIN_CHROME_BALL ? ball_mirror_light(&picture, view, &out->highlights[i], &direction)
+                                        : ball_shading_light(&picture, view, &out->residuals[i], &direction);
+    vec3_put(direction, out->lights[i].direction);
     img_free(&picture);
     if (s == MERLIN_BAD_INPUT && !out->from_mask)
         s = fail_in(s, "the ball found at %.0f, %.0f with radius %.0f (if it is not there, give its outline by a mask)",
                     (double)out->circle.x, (double)out->circle.y, (double)out->circle.radius);
-    return s == OK ? OK : fail_in(s, "%s", out->name[i]);
+    return s == OK ? OK : fail_in(s, "%s", out->names[i]);
 }
 
-static status find_lights(const merlin_capture *c, const img *constant, const ball_view *view, pst_calibration *out)
+static status find_lights(const merlin_capture *c, const img *constant, const ball_view *view, merlin_calibration *out)
 {
     status s = OK;
     for (int i = 0; i < c->count && s == OK; i++)
@@ -188,19 +191,19 @@ static status find_lights(const merlin_capture *c, const img *constant, const ba
     return s;
 }
 
-static status reserve(int count, pst_calibration *out)
+static status reserve(int count, merlin_calibration *out)
 {
     out->count = count;
-    out->direction = calloc((size_t)count, sizeof *out->direction);
+    out->lights = calloc((size_t)count, sizeof *out->lights);
     if (out->ball == MERLIN_CHROME_BALL)
-        out->highlight = calloc((size_t)count, sizeof *out->highlight);
+        out->highlights = calloc((size_t)count, sizeof *out->highlights);
     else
-        out->residual = calloc((size_t)count, sizeof *out->residual);
-    return out->direction && (out->highlight || out->residual) ? OK : fail(MERLIN_NO_MEMORY, "no memory for lights");
+        out->residuals = calloc((size_t)count, sizeof *out->residuals);
+    return out->lights && (out->highlights || out->residuals) ? OK : fail(MERLIN_NO_MEMORY, "no memory for lights");
 }
 
 /* All lights by one outline. */
-static status calibrate_by(const merlin_capture *c, const img *picture, pst_calibration *out)
+static status calibrate_by(const merlin_capture *c, const img *picture, merlin_calibration *out)
 {
     img constant = {0};
     ball_view view = {.circle = out->circle, .camera = c->camera};
@@ -217,55 +220,55 @@ static status calibrate_by(const merlin_capture *c, const img *picture, pst_cali
 
 /* ---- which outline ---- */
 
-static float mean_residual(const pst_calibration *c)
+static float mean_residual(const merlin_calibration *c)
 {
     float sum = 0;
     for (int i = 0; i < c->count; i++)
-        sum += c->residual[i] / (float)c->count;
+        sum += c->residuals[i] / (float)c->count;
     return sum;
 }
 
-static int lights_behind(const pst_calibration *c)
+static int lights_behind(const merlin_calibration *c)
 {
     int count = 0;
     for (int i = 0; i < c->count; i++)
-        count += c->direction[i].z < 0;
+        count += c->lights[i].direction[2] < 0;
     return count;
 }
 
 /* Another outline than the likelier one before: a matte ball's has the shading of one, a mirror's no lights behind. */
-static bool is_better(const pst_calibration *trial, const pst_calibration *best)
+static bool is_better(const merlin_calibration *trial, const merlin_calibration *best)
 {
     static const float CLEARLY = 0.8f;
     if (trial->ball == MERLIN_MATTE_BALL) return mean_residual(trial) < CLEARLY * mean_residual(best);
     return lights_behind(trial) == 0 && lights_behind(best) > 0;
 }
 
-static void take_lights(pst_calibration *from, pst_calibration *to)
+static void take_lights(merlin_calibration *from, merlin_calibration *to)
 {
-    free(to->direction);
-    free(to->highlight);
-    free(to->residual);
+    free(to->lights);
+    free(to->highlights);
+    free(to->residuals);
     to->circle = from->circle;
     to->count = from->count;
-    to->direction = from->direction;
-    to->highlight = from->highlight;
-    to->residual = from->residual;
-    from->direction = NULL;
-    from->highlight = NULL;
-    from->residual = NULL;
+    to->lights = from->lights;
+    to->highlights = from->highlights;
+    to->residuals = from->residuals;
+    from->lights = NULL;
+    from->highlights = NULL;
+    from->residuals = NULL;
 }
 
 /* The first outline's failure is the one that is told. */
-static status choose_outline(const merlin_capture *c, const img *picture, ball_outlines *outlines, pst_calibration *out,
-                             int *chosen)
+static status choose_outline(const merlin_capture *c, const img *picture, ball_outlines *outlines,
+                             merlin_calibration *out, int *chosen)
 {
     status first = OK;
     char words[512] = "";
     *chosen = -1;
     for (int i = 0; i < outlines->count; i++) {
-        pst_calibration trial = {
-            .ball = out->ball, .circle = outlines->at[i], .from_mask = out->from_mask, .name = c->name};
+        merlin_calibration trial = {
+            .ball = out->ball, .circle = outlines->at[i], .from_mask = out->from_mask, .names = c->name};
         status s = calibrate_by(c, picture, &trial);
         outlines->residual[i] = s == OK && out->ball == MERLIN_MATTE_BALL ? mean_residual(&trial) : 2;
         if (s == OK && (*chosen < 0 || is_better(&trial, out))) {
@@ -273,8 +276,8 @@ static status choose_outline(const merlin_capture *c, const img *picture, ball_o
             *chosen = i;
         }
         if (i == 0 && (first = s) != OK) snprintf(words, sizeof words, "%s", status_message());
-        trial.name = NULL;
-        pst_calibration_free(&trial);
+        trial.names = NULL;
+        merlin_calibration_free(&trial);
         if (s != OK && s != MERLIN_BAD_INPUT) return s;
     }
     return *chosen >= 0 ? OK : fail(first, "%s", words);
@@ -287,50 +290,50 @@ static bool is_horizon(float ratio)
 }
 
 /* Tells whether it is decided which of two circles, one within the other, the ball is. */
-static bool is_decided(const ball_outlines *outlines, pst_ball ball, int chosen)
+static bool is_decided(const ball_outlines *outlines, merlin_ball ball, int chosen)
 {
     static const float CLEARLY = 0.6f;
     if (ball == MERLIN_CHROME_BALL) return chosen == 0 && is_horizon(outlines->ratio);
     return outlines->residual[chosen] < CLEARLY * outlines->residual[1 - chosen];
 }
 
-static void doubt(const ball_outlines *outlines, int chosen, pst_calibration *c)
+static void doubt(const ball_outlines *outlines, int chosen, merlin_calibration *c)
 {
-    const pst_circle *other = &outlines->at[1 - chosen % 2];
+    const merlin_circle *other = &outlines->at[1 - chosen % 2];
     if (outlines->nested && chosen < 2 && !is_decided(outlines, c->ball, chosen))
         warnings_add(
-            &c->doubts, "circle_unsure",
+            &c->warnings, "circle_unsure",
             "two circles may be the ball's outline, one of radius %.1f within one of %.1f, and that of %.1f was "
             "taken: if calibration.png does not show it on the outline, give a mask",
             (double)fminf(other->radius, c->circle.radius), (double)fmaxf(other->radius, c->circle.radius),
             (double)c->circle.radius);
     if (chosen == (outlines->nested ? 2 : 1))
         warnings_add(
-            &c->doubts, "circle_unsure",
+            &c->warnings, "circle_unsure",
             "the ball was taken to be at %.0f, %.0f with radius %.1f, beside what looks most like one but does not "
             "shine like one: if calibration.png does not show it there, give a mask",
             (double)c->circle.x, (double)c->circle.y, (double)c->circle.radius);
     int behind = lights_behind(c);
     if (behind)
         warnings_add(
-            &c->doubts, "lights_behind",
+            &c->warnings, "lights_behind",
             "%d of %d lights would stand behind the ball: if the circle in calibration.png is not its outline, "
             "give a mask",
             behind, c->count);
 }
 
-static status doubt_fit(const merlin_capture *c, pst_calibration *out)
+static status doubt_fit(const merlin_capture *c, merlin_calibration *out)
 {
     img outlines = {0};
     status s = outline_picture(&out->brightest, &outlines);
     if (s == OK) s = ball_doubt(&c->mask, &outlines, out);
-    if (s == OK) s = pst_doubt_copies(c, &out->doubts);
+    if (s == OK) s = pst_doubt_copies(c, &out->warnings);
     img_free(&outlines);
     return s;
 }
 
-static status calibrate(const char *folder, const pst_calibrate_options *options, merlin_capture *c,
-                        pst_calibration *out)
+static status calibrate(const char *folder, const merlin_calibrate_params *options, merlin_capture *c,
+                        merlin_calibration *out)
 {
     img picture = {0};
     ball_outlines outlines;
@@ -342,28 +345,41 @@ static status calibrate(const char *folder, const pst_calibrate_options *options
     if (s == OK) s = doubt_fit(c, out);
     img_free(&picture);
     if (s != OK) return s;
-    out->name = c->name;
+    out->names = c->name;
     c->name = NULL;
     return OK;
 }
 
-status pst_calibrate_sphere(const char *folder, const pst_calibrate_options *options, pst_calibration *out)
+static status check_params(const merlin_calibrate_params *p)
 {
-    *out = (pst_calibration){.ball = options->ball};
-    merlin_capture_files reading = {.mask = options->mask, .unknown_lights = 1, .linear = options->linear};
-    if (options->watch) {
-        reading.progress = options->watch->tell;
-        reading.progress_context = options->watch->context;
-        reading.stop = options->watch->stop;
-    }
-    merlin_capture c;
-    status s = pst_capture_read(folder, &reading, &c);
+    if (p->ball != MERLIN_CHROME_BALL && p->ball != MERLIN_MATTE_BALL)
+        return fail(MERLIN_WRONG_USE, "no ball has the number %d", (int)p->ball);
+    if (p->field_of_view >= 0 && p->field_of_view <= 170) return OK;
+    return fail(MERLIN_WRONG_USE, "a camera's field of view is 0 (far away) to 170 degrees, not %g",
+                (double)p->field_of_view);
+}
+
+merlin_status merlin_calibrate(const char *folder, const merlin_calibrate_params *params, merlin_calibration *out)
+{
+    if (out) *out = (merlin_calibration){0};
+    status s = api_needs(__func__, folder && params && out);
+    if (s == OK) s = check_params(params);
     if (s != OK) return s;
-    c.camera = options->field_of_view > 0 ? pinhole_of(c.width, c.height, options->field_of_view) : (pinhole){0};
-    s = calibrate(folder, options, &c, out);
+    out->ball = params->ball;
+    const merlin_capture_files reading = {.mask = params->mask,
+                                          .unknown_lights = 1,
+                                          .linear = params->linear,
+                                          .stop = params->stop,
+                                          .progress = params->progress,
+                                          .progress_context = params->progress_context};
+    merlin_capture c;
+    s = pst_capture_read(folder, &reading, &c);
+    if (s != OK) return s;
+    c.camera = params->field_of_view > 0 ? pinhole_of(c.width, c.height, params->field_of_view) : (pinhole){0};
+    s = calibrate(folder, params, &c, out);
     out->skipped = c.skipped;
     c.skipped = (skipped_files){0};
     pst_capture_free(&c);
-    if (s != OK) pst_calibration_free(out);
+    if (s != OK) merlin_calibration_free(out);
     return s;
 }

@@ -87,19 +87,19 @@ static status find_edges(const img *picture, size_t most, edges *out)
 }
 
 /* Where the normals of two edges meet, if it is as far from both. */
-static bool circle_through(const edge *a, const edge *b, pst_circle *out)
+static bool circle_through(const edge *a, const edge *b, merlin_circle *out)
 {
     float det = a->ny * b->nx - a->nx * b->ny, dx = b->x - a->x, dy = b->y - a->y;
     if (fabsf(det) < 0.2f) return false;
     float t = (dy * b->nx - dx * b->ny) / det;
-    *out = (pst_circle){a->x + t * a->nx, a->y + t * a->ny, fabsf(t)};
+    *out = (merlin_circle){a->x + t * a->nx, a->y + t * a->ny, fabsf(t)};
     float other = hypotf(out->x - b->x, out->y - b->y);
     if (fabsf(other - out->radius) > 2 + 0.03f * out->radius) return false;
     out->radius = 0.5f * (out->radius + other);
     return true;
 }
 
-static bool is_near(const edge *e, const pst_circle *c, float width, float *distance, float *cosine)
+static bool is_near(const edge *e, const merlin_circle *c, float width, float *distance, float *cosine)
 {
     float dx = e->x - c->x, dy = e->y - c->y, d = hypotf(dx, dy);
     *distance = d - c->radius;
@@ -109,7 +109,7 @@ static bool is_near(const edge *e, const pst_circle *c, float width, float *dist
 
 /* The share of the outline where an edge lies on the circle; edges against the common sense (bright inside or outside)
  * count half. */
-static float share_seen(const edges *e, const pst_circle *c)
+static float share_seen(const edges *e, const merlin_circle *c)
 {
     unsigned char seen[2][BINS] = {{0}};
     for (size_t i = 0; i < e->count; i++) {
@@ -128,7 +128,7 @@ static float share_seen(const edges *e, const pst_circle *c)
 }
 
 /* Gauss-Newton on the distance to the circle; the 3 x 3 system by Cramer's rule. */
-static void refine_once(const edges *e, float width, pst_circle *c)
+static void refine_once(const edges *e, float width, merlin_circle *c)
 {
     double m[6] = {0}, v[3] = {0};
     for (size_t i = 0; i < e->count; i++) {
@@ -147,19 +147,19 @@ static void refine_once(const edges *e, float width, pst_circle *c)
     c->radius += (float)((k * v[0] + q * v[1] + r * v[2]) / det);
 }
 
-static void refine(const edges *e, pst_circle *c)
+static void refine(const edges *e, merlin_circle *c)
 {
     for (int i = 0; i < REFINEMENTS; i++)
         refine_once(e, i < REFINEMENTS / 2 ? 2 * NEAR_CIRCLE : NEAR_CIRCLE, c);
 }
 
-static float sample_circles(const edges *e, const img *picture, pst_circle *best)
+static float sample_circles(const edges *e, const img *picture, merlin_circle *best)
 {
     float most = 0, largest = (float)(picture->width > picture->height ? picture->width : picture->height);
     rng r = rng_at(1, 0, 0);
     for (int i = 0; i < TRIES; i++) {
         const edge *a = &e->at[rng_below(&r, (int)e->count)], *b = &e->at[rng_below(&r, (int)e->count)];
-        pst_circle c;
+        merlin_circle c;
         if (!circle_through(a, b, &c) || c.radius < LEAST_RADIUS || c.radius > 0.75f * largest || c.x < 0 || c.y < 0 ||
             c.x > (float)picture->width || c.y > (float)picture->height)
             continue;
@@ -172,7 +172,7 @@ static float sample_circles(const edges *e, const img *picture, pst_circle *best
 }
 
 /* Without those of another ball, what is about it included. */
-static void keep_beside(edges *e, const pst_circle *other)
+static void keep_beside(edges *e, const merlin_circle *other)
 {
     static const float ABOUT = 1.1f; /* radii */
     size_t kept = 0;
@@ -181,7 +181,7 @@ static void keep_beside(edges *e, const pst_circle *other)
     e->count = kept < MOST_EDGES ? kept : MOST_EDGES;
 }
 
-status ball_find(const img *picture, const pst_circle *beside, pst_circle *circle, bool *found)
+status ball_find(const img *picture, const merlin_circle *beside, merlin_circle *circle, bool *found)
 {
     *found = false;
     edges e;
@@ -196,7 +196,7 @@ status ball_find(const img *picture, const pst_circle *beside, pst_circle *circl
     return OK;
 }
 
-status ball_share_seen(const img *picture, const pst_circle *circle, float *share)
+status ball_share_seen(const img *picture, const merlin_circle *circle, float *share)
 {
     edges e;
     status s = find_edges(picture, MOST_EDGES, &e);
@@ -207,7 +207,7 @@ status ball_share_seen(const img *picture, const pst_circle *circle, float *shar
 }
 
 /* Keeps those near the circle alone, so that stronger ones elsewhere take no room. */
-static void keep_near(edges *e, const pst_circle *c)
+static void keep_near(edges *e, const merlin_circle *c)
 {
     size_t kept = 0;
     for (size_t i = 0; i < e->count; i++) {
@@ -217,12 +217,12 @@ static void keep_near(edges *e, const pst_circle *c)
     e->count = kept;
 }
 
-status ball_refine(const img *picture, pst_circle *circle)
+status ball_refine(const img *picture, merlin_circle *circle)
 {
     edges e;
     status s = find_edges(picture, SIZE_MAX, &e);
     if (s != OK) return s;
-    pst_circle found = *circle;
+    merlin_circle found = *circle;
     keep_near(&e, circle);
     refine(&e, &found);
     float moved = hypotf(found.x - circle->x, found.y - circle->y) + fabsf(found.radius - circle->radius);
@@ -231,7 +231,7 @@ status ball_refine(const img *picture, pst_circle *circle)
     return OK;
 }
 
-static bool orthographic_point(const pst_circle *c, float x, float y, vec3 *normal, vec3 *to_camera)
+static bool orthographic_point(const merlin_circle *c, float x, float y, vec3 *normal, vec3 *to_camera)
 {
     float u = (x - c->x) / c->radius, v = (c->y - y) / c->radius, rest = 1 - u * u - v * v;
     if (!(rest > 0)) return false;
@@ -283,7 +283,7 @@ static edge turned_edge(const turn *t, const edge *from)
 }
 
 /* Beside the axis the outline is an ellipse, and not about the ball's center; a camera turned to that sees a circle. */
-static vec3 center_of(const edges *e, edges *turned, const pinhole *camera, const pst_circle *circle)
+static vec3 center_of(const edges *e, edges *turned, const pinhole *camera, const merlin_circle *circle)
 {
     enum { ROUNDS = 4 };
     vec3 axis = pixel_ray(camera, circle->x, circle->y);
@@ -292,7 +292,7 @@ static vec3 center_of(const edges *e, edges *turned, const pinhole *camera, cons
         turn t = turn_to(camera, axis);
         for (turned->count = 0; turned->count < e->count; turned->count++)
             turned->at[turned->count] = turned_edge(&t, &e->at[turned->count]);
-        pst_circle seen = {camera->x, camera->y, radius};
+        merlin_circle seen = {camera->x, camera->y, radius};
         refine(turned, &seen);
         axis = turn_back(&t, pixel_ray(camera, seen.x, seen.y));
         radius = seen.radius;
@@ -300,7 +300,7 @@ static vec3 center_of(const edges *e, edges *turned, const pinhole *camera, cons
     return vec3_scale(axis, hypotf(camera->focal, radius) / radius);
 }
 
-status ball_center(const img *picture, const pinhole *camera, const pst_circle *circle, vec3 *center)
+status ball_center(const img *picture, const pinhole *camera, const merlin_circle *circle, vec3 *center)
 {
     edges e;
     status s = find_edges(picture, MOST_EDGES, &e);
@@ -317,7 +317,7 @@ status ball_center(const img *picture, const pinhole *camera, const pst_circle *
 
 bool ball_point(const ball_view *view, float x, float y, vec3 *normal, vec3 *to_camera)
 {
-    const pst_circle *c = &view->circle;
+    const merlin_circle *c = &view->circle;
     if (!(view->camera.focal > 0)) return orthographic_point(c, x, y, normal, to_camera);
     vec3 center = view->center, ray = pixel_ray(&view->camera, x, y);
     float along = vec3_dot(center, ray), rest = along * along - vec3_dot(center, center) + 1;

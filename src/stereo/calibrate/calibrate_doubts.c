@@ -14,27 +14,27 @@ static const float HARDLY = 0.2f, PLAINLY = 0.8f;
 /* The share of a radius from which on two circles are different ones. */
 static const float ELSEWHERE = 0.08f;
 
-static void doubt_shading(pst_calibration *c)
+static void doubt_shading(merlin_calibration *c)
 {
     float sum = 0;
-    for (int i = 0; i < c->count && c->residual; i++)
-        sum += c->residual[i] / (float)c->count;
+    for (int i = 0; i < c->count && c->residuals; i++)
+        sum += c->residuals[i] / (float)c->count;
     if (sum > UNLIKE)
         warnings_add(
-            &c->doubts, "shading_unlike",
+            &c->warnings, "shading_unlike",
             "the ball does not shade like a matte one, by %.0f %% of the light, and lights may be many degrees "
             "off: is it matte, are the values linear (--linear), and is the circle in calibration.png on its "
             "outline?",
             100 * (double)sum);
 }
 
-static bool is_within(const pst_circle *c, int x, int y)
+static bool is_within(const merlin_circle *c, int x, int y)
 {
     return hypotf((float)x + 0.5f - c->x, (float)y + 0.5f - c->y) < c->radius;
 }
 
 /* Returns the share that both cover of all that either does. The mask may be white on the ball or beside it. */
-static double overlap(const img *mask, const pst_circle *c)
+static double overlap(const img *mask, const merlin_circle *c)
 {
     size_t both = 0, either = 0, other_both = 0, other_either = 0;
     for (int y = 0; y < mask->height; y++)
@@ -48,22 +48,22 @@ static double overlap(const img *mask, const pst_circle *c)
     return fmax((double)both / fmax((double)either, 1), (double)other_both / fmax((double)other_either, 1));
 }
 
-static bool is_elsewhere(const pst_circle *a, const pst_circle *b)
+static bool is_elsewhere(const merlin_circle *a, const merlin_circle *b)
 {
     return hypotf(a->x - b->x, a->y - b->y) + fabsf(a->radius - b->radius) > ELSEWHERE * a->radius;
 }
 
 /* Doubts the mask's circle where another is plainly seen and it is not. */
-static status doubt_place(const img *outlines, pst_calibration *c)
+static status doubt_place(const img *outlines, merlin_calibration *c)
 {
-    pst_circle seen;
+    merlin_circle seen;
     bool found;
     float share = 1, other = 0;
     status s = ball_find(outlines, NULL, &seen, &found);
     if (s == OK) s = ball_share_seen(outlines, &c->circle, &share);
     if (s == OK && found) s = ball_share_seen(outlines, &seen, &other);
     if (s != OK || share > HARDLY || other < PLAINLY || !is_elsewhere(&c->circle, &seen)) return s;
-    warnings_add(&c->doubts, "circle_unsure",
+    warnings_add(&c->warnings, "circle_unsure",
                  "the mask's circle, at %.0f, %.0f with radius %.1f, has no edge in the pictures, which have one at "
                  "%.0f, %.0f with radius %.1f, and lights may be many degrees off: is it the mask of this ball?",
                  (double)c->circle.x, (double)c->circle.y, (double)c->circle.radius, (double)seen.x, (double)seen.y,
@@ -71,12 +71,12 @@ static status doubt_place(const img *outlines, pst_calibration *c)
     return OK;
 }
 
-status ball_doubt(const img *mask, const img *outlines, pst_calibration *c)
+status ball_doubt(const img *mask, const img *outlines, merlin_calibration *c)
 {
     doubt_shading(c);
     if (!c->from_mask) return OK;
     if (overlap(mask, &c->circle) < (double)ROUND)
-        warnings_add(&c->doubts, "mask_not_round",
+        warnings_add(&c->warnings, "mask_not_round",
                      "the mask is no disc, and the circle that fits its edge, at %.0f, %.0f with radius %.1f, may not "
                      "be the ball's outline: compare it in calibration.png",
                      (double)c->circle.x, (double)c->circle.y, (double)c->circle.radius);

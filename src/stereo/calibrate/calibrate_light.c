@@ -127,7 +127,7 @@ static status find_blobs(const img *p, const ball_view *view, float level, blobs
     return s;
 }
 
-status ball_mirror_light(const img *picture, const ball_view *view, pst_circle *highlight, vec3 *direction)
+status ball_mirror_light(const img *picture, const ball_view *view, merlin_circle *highlight, vec3 *direction)
 {
     static const float LEVEL = 0.5f;        /* of the peak */
     static const float LEAST_PEAK = 0.004f; /* of full scale: an 8-bit step */
@@ -145,7 +145,7 @@ status ball_mirror_light(const img *picture, const ball_view *view, pst_circle *
     if (s != OK) return s;
     if (share < LEAST_SHARE)
         return fail(MERLIN_BAD_INPUT, "no highlight on the ball stands out: was the light on, and the only one?");
-    *highlight = (pst_circle){(float)(b.x / b.sum), (float)(b.y / b.sum), sqrtf((float)b.area / 3.14159265f)};
+    *highlight = (merlin_circle){(float)(b.x / b.sum), (float)(b.y / b.sum), sqrtf((float)b.area / 3.14159265f)};
     if (highlight->radius > 0.5f * view->circle.radius)
         return fail(MERLIN_BAD_INPUT, "what is bright covers more than a quarter of the ball: is it chrome?");
     vec3 n, v;

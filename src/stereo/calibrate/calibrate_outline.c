@@ -34,7 +34,7 @@ static bool pixel_at(const img *p, float x, float y, float *value)
 }
 
 /* across: how far from the circle is looked, in pixels. */
-static steps steps_across(const img *p, const pst_circle *c, float across)
+static steps steps_across(const img *p, const merlin_circle *c, float across)
 {
     float sum = 0, squares = 0;
     int seen = 0;
@@ -63,7 +63,7 @@ static float worth(const steps *s)
     return fabsf(s->mean) * s->alike;
 }
 
-static void try_circle(const img *p, const pst_circle *trial, float across, float *most, pst_circle *best)
+static void try_circle(const img *p, const merlin_circle *trial, float across, float *most, merlin_circle *best)
 {
     steps s = steps_across(p, trial, across);
     if (!(worth(&s) > *most)) return;
@@ -72,7 +72,7 @@ static void try_circle(const img *p, const pst_circle *trial, float across, floa
 }
 
 /* The worthiest circle that has the inner one in it, not nearer than steps of that one's own edge reach. */
-static float search(const img *p, const pst_circle *inner, float across, pst_circle *best)
+static float search(const img *p, const merlin_circle *inner, float across, merlin_circle *best)
 {
     float most = 0, reach = ASIDE * inner->radius;
     for (int place = 0; place < PLACES * PLACES; place++) {
@@ -81,7 +81,7 @@ static float search(const img *p, const pst_circle *inner, float across, pst_cir
         float dy = reach * (2 * (float)row / (PLACES - 1) - 1);
         float least = inner->radius + hypotf(dx, dy) + 2 * across, largest = LARGEST * inner->radius;
         for (int i = 0; i <= RADII && least < largest; i++) {
-            pst_circle trial = {inner->x + dx, inner->y + dy, least + (largest - least) * (float)i / RADII};
+            merlin_circle trial = {inner->x + dx, inner->y + dy, least + (largest - least) * (float)i / RADII};
             try_circle(p, &trial, across, &most, best);
         }
     }
@@ -89,24 +89,24 @@ static float search(const img *p, const pst_circle *inner, float across, pst_cir
 }
 
 /* Uphill from the grid's best, by smaller and smaller moves. */
-static void polish(const img *p, const pst_circle *inner, float across, float most, pst_circle *best)
+static void polish(const img *p, const merlin_circle *inner, float across, float most, merlin_circle *best)
 {
     float move = 2 * ASIDE * inner->radius / (PLACES - 1);
     for (int round = 0; round < POLISH; round++, move /= 2)
         for (int k = 0; k < 27; k++) {
             int right = k % 3 - 1, down = k / 3 % 3 - 1, larger = k / 9 - 1;
-            pst_circle trial = {best->x + move * (float)right, best->y + move * (float)down,
-                                best->radius + move * (float)larger};
+            merlin_circle trial = {best->x + move * (float)right, best->y + move * (float)down,
+                                   best->radius + move * (float)larger};
             float apart = hypotf(trial.x - inner->x, trial.y - inner->y);
             if (trial.radius < inner->radius + apart + 2 * across) continue;
             try_circle(p, &trial, across, &most, best);
         }
 }
 
-static bool is_outline(const img *p, const pst_circle *c, float across)
+static bool is_outline(const img *p, const merlin_circle *c, float across)
 {
     steps here = steps_across(p, c, across);
-    pst_circle in = *c, out = *c;
+    merlin_circle in = *c, out = *c;
     in.radius -= 2 * across;
     out.radius += 2 * across;
     steps further_in = steps_across(p, &in, across), further_out = steps_across(p, &out, across);
@@ -114,7 +114,7 @@ static bool is_outline(const img *p, const pst_circle *c, float across)
     return here.alike > LEAST_ALIKE && fabsf(here.mean) > LEAST_STEP && fabsf(here.mean) > SHARPER * beside;
 }
 
-bool ball_around(const img *picture, const pst_circle *inner, pst_circle *outer)
+bool ball_around(const img *picture, const merlin_circle *inner, merlin_circle *outer)
 {
     float across = fmaxf(2, inner->radius / 24);
     float most = search(picture, inner, across, outer);
@@ -128,28 +128,28 @@ bool ball_around(const img *picture, const pst_circle *inner, pst_circle *outer)
     return is_outline(picture, outer, across);
 }
 
-bool ball_has_horizon(const img *picture, const pst_circle *circle)
+bool ball_has_horizon(const img *picture, const merlin_circle *circle)
 {
     enum { STEPS = 12 };
     static const float LEAST = 0.66f, MOST = 0.76f, BESIDE = 0.05f, CLEARLY = 0.8f;
     float across = fmaxf(1.5f, circle->radius / 30), most = 0;
-    pst_circle best = *circle;
+    merlin_circle best = *circle;
     for (int place = 0; place < 9; place++)
         for (int i = 0; i <= STEPS; i++) {
             int right = place % 3 - 1, down = place / 3 - 1;
-            pst_circle trial = {circle->x + BESIDE * circle->radius * (float)right,
-                                circle->y + BESIDE * circle->radius * (float)down,
-                                circle->radius * (LEAST + (MOST - LEAST) * (float)i / STEPS)};
+            merlin_circle trial = {circle->x + BESIDE * circle->radius * (float)right,
+                                   circle->y + BESIDE * circle->radius * (float)down,
+                                   circle->radius * (LEAST + (MOST - LEAST) * (float)i / STEPS)};
             try_circle(picture, &trial, across, &most, &best);
         }
     return most > 0 && steps_across(picture, &best, across).alike > CLEARLY && is_outline(picture, &best, across);
 }
 
-status ball_list_outlines(const img *picture, const img *darkest, pst_ball ball, ball_outlines *out)
+status ball_list_outlines(const img *picture, const img *darkest, merlin_ball ball, ball_outlines *out)
 {
     *out = (ball_outlines){0};
     bool found = false;
-    pst_circle first, around, beside;
+    merlin_circle first, around, beside;
     status s = ball_find(picture, NULL, &first, &found);
     if (s != OK || !found) return s;
     bool within =

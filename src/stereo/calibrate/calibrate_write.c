@@ -1,38 +1,43 @@
 /* SPDX-License-Identifier: MIT */
+#include "merlin/calibrate.h"
+
+#include <math.h>
 #include <stdio.h>
 
+#include "base/api_needs.h"
 #include "base/file.h"
 #include "base/lights/light_list.h"
+#include "base/staging.h"
+#include "image/image.h"
 #include "image/resize.h"
 #include "image/write/canvas.h"
-#include "stereo/calibrate/calibrate.h"
 
 static void print_lights(FILE *out, const void *context)
 {
-    const pst_calibration *c = context;
+    const merlin_calibration *c = context;
     fprintf(out, LIGHT_LIST_OF_CALIBRATION " a %s ball: x right, y up, z toward the camera.\n",
             c->ball == MERLIN_CHROME_BALL ? "chrome" : "matte");
     for (int i = 0; i < c->count; i++) {
-        vec3 d = c->direction[i];
-        fprintf(out, "%.6f %.6f %.6f\n", (double)d.x, (double)d.y, (double)d.z);
+        const float *d = c->lights[i].direction;
+        fprintf(out, "%.6f %.6f %.6f\n", (double)d[0], (double)d[1], (double)d[2]);
     }
 }
 
-static void draw_light(const pst_calibration *c, int i, float scale, canvas_drawing *d)
+static void draw_light(const merlin_calibration *c, int i, float scale, canvas_drawing *d)
 {
     double x = c->circle.x * scale, y = c->circle.y * scale, r = c->circle.radius * scale;
-    double tip_x = x + r * c->direction[i].x, tip_y = y - r * c->direction[i].y;
+    double tip_x = x + r * c->lights[i].direction[0], tip_y = y - r * c->lights[i].direction[1];
     fprintf(d->out,
             "<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" stroke=\"#8ab4f8\" stroke-width=\"1.2\" "
             "marker-end=\"url(#tip)\"/>\n<text x=\"%.1f\" y=\"%.1f\" font-size=\"11\" fill=\"#fdd663\">%d</text>\n",
             x, y, tip_x, tip_y, tip_x + 4, tip_y - 4, i + 1);
-    if (!c->highlight) return;
+    if (!c->highlights) return;
     fprintf(d->out,
             "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\" fill=\"none\" stroke=\"#f28b82\" stroke-width=\"1.2\"/>\n",
-            c->highlight[i].x * scale, c->highlight[i].y * scale, c->highlight[i].radius * scale + 1);
+            c->highlights[i].x * scale, c->highlights[i].y * scale, c->highlights[i].radius * scale + 1);
 }
 
-static void draw_all(const pst_calibration *c, float scale, canvas_drawing *d)
+static void draw_all(const merlin_calibration *c, float scale, canvas_drawing *d)
 {
     fputs("<defs><marker id=\"tip\" viewBox=\"0 0 8 8\" refX=\"7\" refY=\"4\" markerWidth=\"7\" markerHeight=\"7\" "
           "orient=\"auto\"><path d=\"M0 0L8 4L0 8z\" fill=\"#8ab4f8\"/></marker></defs>\n",
@@ -45,7 +50,7 @@ static void draw_all(const pst_calibration *c, float scale, canvas_drawing *d)
 }
 
 /* An arrow is as long as the ball's radius when its light is at the side, and a point when it is behind the camera. */
-static status write_picture(const pst_calibration *c, const char *path)
+static status write_picture(const merlin_calibration *c, const char *path)
 {
     static const float LARGEST = 1280;
     int width = c->brightest.width, height = c->brightest.height;
@@ -70,8 +75,18 @@ static status write_picture(const pst_calibration *c, const char *path)
     return s;
 }
 
-status pst_calibration_write(const pst_calibration *c, const char *lights, const char *picture)
+merlin_status merlin_calibration_write(const merlin_calibration *calibration, const char *folder, merlin_files *written)
 {
-    status s = write_picture(c, picture);
-    return s == OK ? file_print(lights, print_lights, c) : s;
+    const merlin_calibration *c = calibration;
+    status s = api_needs(__func__, c && folder);
+    if (s == OK && (!c->lights || !c->brightest.data)) s = fail(MERLIN_WRONG_USE, "this calibration is empty");
+    if (s != OK) return s;
+    const char *const inputs[STAGING_MOST_INPUTS] = {c->mask_file};
+    staging *t;
+    char lights[PATH_MAX], picture[PATH_MAX];
+    s = staging_begin(folder, inputs, &t);
+    if (s != OK) return s;
+    s = write_picture(c, staging_path(t, "calibration.png", picture));
+    if (s == OK) s = file_print(staging_path(t, "lights.txt", lights), print_lights, c);
+    return s == OK ? staging_commit(t, written) : staging_abort(t, s);
 }

@@ -1,17 +1,23 @@
 /* SPDX-License-Identifier: MIT */
-#include "stereo/calibrate/calibration.h"
+#include "merlin/calibrate.h"
 
 #include <stdlib.h>
 
-void pst_calibration_free(pst_calibration *c)
+#include "base/skipped.h"
+#include "image/image.h"
+
+void merlin_calibration_free(merlin_calibration *calibration)
 {
-    for (int i = 0; c->name && i < c->count; i++)
-        free(c->name[i]);
-    free(c->name);
-    free(c->direction);
-    free(c->highlight);
-    free(c->residual);
+    merlin_calibration *c = calibration;
+    if (!c) return;
+    for (int i = 0; c->names && i < c->count; i++)
+        free(c->names[i]);
+    free(c->names);
+    free(c->lights);
+    free(c->highlights);
+    free(c->residuals);
+    free(c->mask_file);
     skipped_free(&c->skipped);
     img_free(&c->brightest);
-    *c = (pst_calibration){0};
+    *c = (merlin_calibration){0};
 }
