@@ -31,8 +31,8 @@
 #ifndef MERLIN_MERLIN_H
 #define MERLIN_MERLIN_H
 
-#include <merlin/camera.h>
 #include <merlin/calibrate.h>
+#include <merlin/camera.h>
 #include <merlin/estimate.h>
 #include <merlin/image.h>
 #include <merlin/maps.h>
