@@ -41,6 +41,11 @@ void img_free(img *image)
     *image = (img){0};
 }
 
+void merlin_image_free(merlin_image *image)
+{
+    img_free(image);
+}
+
 status img_copy(img *out, const img *from)
 {
     status s = make(out, from->width, from->height, from->channels, malloc);

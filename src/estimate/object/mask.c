@@ -2,31 +2,16 @@
 #include "estimate/object/mask.h"
 
 #include "estimate/object/find_object.h"
+#include "image/coverage.h"
 
-static const float NOTHING = 0.05f, EVERYTHING = 0.95f;
-
-bool mask_is_opaque(const img *mask)
-{
-    size_t count = (size_t)mask->width * (size_t)mask->height;
-    for (size_t i = 0; i < count; i++)
-        if (!(mask->data[i] > EVERYTHING)) return false;
-    return true;
-}
-
-bool mask_is_transparent(const img *mask)
-{
-    size_t count = (size_t)mask->width * (size_t)mask->height;
-    for (size_t i = 0; i < count; i++)
-        if (mask->data[i] >= 0.5f) return false;
-    return true;
-}
+static const float NOTHING = 0.05f;
 
 void mask_clean(img *mask)
 {
     size_t count = (size_t)mask->width * (size_t)mask->height;
     for (size_t i = 0; i < count; i++) {
         float m = mask->data[i];
-        mask->data[i] = m > EVERYTHING ? 1 : m >= NOTHING ? m : 0;
+        mask->data[i] = m > COVERAGE_WHOLE ? 1 : m >= NOTHING ? m : 0;
     }
 }
 

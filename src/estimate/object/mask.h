@@ -25,9 +25,4 @@ status mask_choose(const img *photo, const img *given, const merlin_hint *hint, 
 /* Makes values below 0.05 zero and those above 0.95 one: what an enlargement rings by, too. */
 void mask_clean(img *mask);
 
-/* Says nothing: 1 everywhere. */
-bool mask_is_opaque(const img *mask);
-/* Shows nothing: less than half everywhere. */
-bool mask_is_transparent(const img *mask);
-
 #endif

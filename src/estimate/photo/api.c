@@ -5,65 +5,6 @@
 #include <string.h>
 
 #include "base/api_needs.h"
-#include "base/file.h"
-#include "estimate/object/mask.h"
-#include "image/read/read.h"
-#include "image/write/write.h"
-
-merlin_status merlin_image_read(const char *path, merlin_image *color, merlin_image *alpha)
-{
-    if (color) *color = (merlin_image){0};
-    if (alpha) *alpha = (merlin_image){0};
-    status s = api_needs(__func__, path && color);
-    if (s != OK) return s;
-    img c = {0}, a = {0};
-    s = img_read(path, &c, alpha ? &a : NULL);
-    if (s == OK && a.data && mask_is_transparent(&a))
-        s = fail(MERLIN_BAD_INPUT,
-                 "%s is transparent everywhere, so its alpha shows no object; give a mask, or save it "
-                 "without alpha",
-                 path);
-    if (s != OK) {
-        img_free(&c);
-        img_free(&a);
-        return s;
-    }
-    if (a.data && mask_is_opaque(&a)) img_free(&a);
-    *color = c;
-    if (alpha) *alpha = a;
-    return MERLIN_OK;
-}
-
-merlin_status merlin_mask_read(const char *path, merlin_image *mask)
-{
-    if (mask) *mask = (merlin_image){0};
-    status s = api_needs(__func__, path && mask);
-    if (s != OK) return s;
-    img m = {0};
-    s = img_read_mask(path, &m);
-    *mask = m;
-    return s;
-}
-
-merlin_status merlin_image_write(const char *path, const merlin_image *image)
-{
-    status s = api_needs(__func__, path && image);
-    if (s != OK) return s;
-    img m = *image;
-    if (!m.data || m.width < 1 || m.height < 1)
-        return fail(MERLIN_WRONG_USE, "cannot write %s: the image has no pixels", path);
-    if (!file_ends_in(path, ".png"))
-        return fail(MERLIN_WRONG_USE, "cannot write %s: a PNG is written, so let its name end in .png", path);
-    return img_write_png(path, &m, IMG_SRGB8);
-}
-
-void merlin_image_free(merlin_image *image)
-{
-    if (!image) return;
-    img m = *image;
-    img_free(&m);
-    *image = (merlin_image){0};
-}
 
 void merlin_maps_free(merlin_maps *maps)
 {

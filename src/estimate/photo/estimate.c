@@ -17,6 +17,7 @@
 #include "estimate/photo/model_pair.h"
 #include "estimate/photo/photo_object.h"
 #include "estimate/surface/exposure.h"
+#include "image/coverage.h"
 #include "image/read/read.h"
 
 enum { LEAST_SIDE = 16 };
@@ -159,7 +160,7 @@ static status take_out(work *w, merlin_image *object)
 /* Of what the network will see. */
 static status check_seen(const img *photo, const img *mask)
 {
-    if (mask_is_transparent(mask))
+    if (coverage_is_transparent(mask))
         return fail(MERLIN_BAD_INPUT,
                     "the object is too thin or scattered: it covers half of no pixel of the %d×%d that the network "
                     "sees; give a larger size or a mask of one part",
