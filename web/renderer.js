@@ -41,7 +41,8 @@ export class Renderer {
             makeTarget(gl, [makeTexture(gl, "r16f", this.shadowSide, this.shadowSide, { smooth: true })]));
         this.cast = new Array(MOST_LAMPS).fill(""); // for which lamp each was drawn
         this.picture = makeTarget(gl, [makeTexture(gl, "srgb8", side, side, { smooth: true, levels })]);
-        this.other = makeTarget(gl, [makeTexture(gl, "srgb8", side, side, { smooth: true, levels })]);
+        const photo = scene.photo ? side : 1; // a page without one compares nothing
+        this.other = makeTarget(gl, [makeTexture(gl, "srgb8", photo, photo, { smooth: true, levels: levelsOf(photo) })]);
         this.shared = {
             material: this.material, shape: this.shape, depth_range: scene.depth, caster: this.caster, matte: scene.matte,
             ...this.camera.uniforms(),

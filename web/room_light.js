@@ -27,9 +27,7 @@ export class RoomLight {
         this.scene = scene;
         this.shared = shared;
         this.places = lobePlaces();
-        this.whole = makeTarget(gl, [makeTexture(gl, "rgba16f", scene.side, scene.side, { smooth: true })]);
-        const few = Math.max(Math.ceil(scene.side / COARSER), 1);
-        this.coarse = makeTarget(gl, [makeTexture(gl, "rgba16f", few, few, { smooth: true })]);
+        this.none = makeTexture(gl, "rgba16f", 1, 1, { smooth: true });
         this.next = 0; // the row to go on at
     }
 
@@ -45,6 +43,9 @@ export class RoomLight {
             bounce: new Program(gl, WHOLE, ["harmonics.glsl", "bounce.frag.glsl"]),
             room: new Program(gl, WHOLE, [...SURFACE, "sight.glsl", "seen_sky.glsl", "harmonics.glsl", "room.frag.glsl"]),
         };
+        const side = scene.side, few = Math.max(Math.ceil(side / COARSER), 1);
+        this.whole = makeTarget(gl, [makeTexture(gl, "rgba16f", side, side, { smooth: true })]);
+        this.coarse = makeTarget(gl, [makeTexture(gl, "rgba16f", few, few, { smooth: true })]);
         this.low = makeTarget(gl, [makeTexture(gl, "rgba16f", low, low), makeTexture(gl, "rgba16f", low, low)]);
         fill(gl, this.low, this.programs.low, { ...this.shared, step_size: scene.side / low });
         this.share = target(false);
@@ -123,6 +124,7 @@ export class RoomLight {
     }
 
     texture() {
+        if (!this.programs) return this.none;
         return (this.next < this.scene.side ? this.coarse : this.whole).textures[0];
     }
 }

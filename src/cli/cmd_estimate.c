@@ -14,6 +14,7 @@
 #include "cli/commands.h"
 #include "cli/expect.h"
 #include "cli/mesh_file.h"
+#include "cli/page.h"
 #include "cli/photo_mesh.h"
 #include "cli/stage_bar.h"
 #include "cli/written.h"
@@ -61,6 +62,7 @@ static const char help[] =
     "      --exposure EV    brighten by EV stops for the network; default auto: only if too dark or too bright\n"
     "      --mesh [FILE]    write mesh.glb, too: the object's front with albedo, normals and roughness; or, of one\n"
     "                       photograph, FILE, which ends in .ply, .obj or .glb and may be given again\n"
+    "      --html           write viewer.html, too: a page in which a browser lights the object (merlin view)\n"
     "      --share K/N      of several photographs the K-th of N equal shares alone, for as many machines\n"
     "  -r, --resume         of several, those alone whose maps are not there yet, or older than photograph or mask\n"
     "      --json           a report as JSON on standard output, one line a photograph\n"
@@ -75,7 +77,7 @@ typedef struct request {
     char *weights, *flash_weights; /* files; the latter NULL for none */
     merlin_params params;
     photo_share share; /* of 0: all */
-    bool mesh, flash, resume, json, quiet, help;
+    bool mesh, html, flash, resume, json, quiet, help;
     mesh_names meshes;
     merlin_model *model;
     const photo_list *photos;
@@ -110,6 +112,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"flash", .flag = &r->flash},
         {"exposure", .take = photo_take_exposure, .into = &r->params},
         {"mesh", .flag = &r->mesh, .take = mesh_take_name, .into = &r->meshes, .is_value = mesh_is_name, .many = true},
+        {"html", .flag = &r->html},
         {"share", .take = photo_take_share, .into = &r->share},
         {"resume", 'r', .flag = &r->resume},
         {"json", .flag = &r->json},
@@ -188,6 +191,7 @@ static status announce(const request *r, const photo_job *job, const merlin_maps
                written_words(written, amount), lit_by(r, maps, lit));
     warnings doubts = {0};
     doubts_list(maps, &doubts);
+    if (r->html) page_doubt(maps->crop.side, 0, &doubts);
     if (!r->quiet) warnings_print(&doubts, "estimate", standard_input_name(job->photo), TOLD);
     return s;
 }
@@ -200,11 +204,12 @@ static double lap(double *clock)
     return passed;
 }
 
-typedef struct mesh_work {
+/* What is written beside the maps. */
+typedef struct more_work {
     const request *request;
     const photo_job *job;
     const char *const *inputs;
-} mesh_work;
+} more_work;
 
 static status write_named_mesh(const void *maps, const char *path)
 {
@@ -216,12 +221,13 @@ static void plan(const request *r, double pixels)
     stage_cost stages[STAGE_BAR_MOST];
     size_t count = expect_estimate(pixels, stages, 0);
     stages[count++] = (stage_cost){"writing", expect_maps_written(pixels, r->mesh || r->meshes.count > 0)};
+    if (r->html) stages[count - 1].cost += page_cost(pixels);
     stage_bar_plan(r->bar, stages, count);
 }
 
-static status write_meshes(const void *context, const merlin_maps *maps, maps_staging *to)
+static status write_more(const void *context, const merlin_maps *maps, maps_staging *to)
 {
-    const mesh_work *w = context;
+    const more_work *w = context;
     char path[PATH_MAX];
     status s = w->request->mesh ? photo_mesh_write(maps, staging_path(to->at[0], "mesh.glb", path)) : OK;
     for (int i = 0; i < w->request->meshes.count && s == OK; i++) {
@@ -229,6 +235,8 @@ static status write_meshes(const void *context, const merlin_maps *maps, maps_st
         s = mesh_file_stage(&named, &to->at[to->count]);
         to->count += to->at[to->count] != NULL;
     }
+    const page_source of = {standard_input_name(w->job->photo), w->job->output, 0, false};
+    if (s == OK && w->request->html) s = page_write(maps, &of, staging_path(to->at[0], PAGE_FILE, path));
     return s;
 }
 
@@ -241,7 +249,7 @@ static status take_apart(const request *r, const photo_job *job, merlin_image *p
     merlin_maps maps = {0};
     staged_files written = {0};
     const char *const inputs[STAGING_MOST_INPUTS] = {job->photo, job->mask};
-    mesh_work meshes = {r, job, inputs};
+    more_work more = {r, job, inputs};
     plan(r, (double)photo->width * photo->height);
     object->watch = r->watch;
     object->last = last;
@@ -250,8 +258,8 @@ static status take_apart(const request *r, const photo_job *job, merlin_image *p
                       .stop = cli_interrupted,
                       .watch = r->watch,
                       .last = last,
-                      .more = write_meshes,
-                      .context = &meshes,
+                      .more = write_more,
+                      .context = &more,
                       .written = &written};
     status s = estimate_object(r->model, photo, object, &r->params, &maps);
     if (s != OK) s = fail_in(s, "%s", job->photo);

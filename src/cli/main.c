@@ -6,6 +6,7 @@
 static const cli_command commands[] = {
     {"estimate", "take a photograph apart into albedo, normal, depth and roughness", cmd_estimate},
     {"relight", "show the object of a photograph under other light", cmd_relight},
+    {"view", "the maps as a page that a browser opens and lights", cmd_view},
     {"stereo", "surfaces from many lights, or from one photograph", cmd_stereo},
     {"info", "say what is in a weights file", cmd_info},
 };

@@ -22,7 +22,7 @@ listed() {
 }
 
 for command in "estimate disc.hdr --size 64" "relight disc.merlin --direction 0.3,0.2,1" \
-    "relight disc.merlin --dome 8 --lp -o dome" "stereo dome" "stereo disc.merlin -o views"; do
+    "relight disc.merlin --dome 8 --lp -o dome" "view disc.merlin" "stereo dome" "stereo disc.merlin -o views"; do
     # shellcheck disable=SC2086
     "$MERLIN" $command --json >report 2>stderr || complain "$command: $(cat stderr)"
     listed "$command" report

@@ -81,7 +81,7 @@ present out/demo/{overview.png,orbit/orbit.webp,mesh.glb}
 echo "a picture of one's own"
 cp examples/demo.png photo.jpg
 radiance room.hdr 32 6 64
-run_all "$MERLIN_SOURCE_DIR/README.md" 'merlin (estimate|relight (photo.merlin|window))'
+run_all "$MERLIN_SOURCE_DIR/README.md" 'merlin (estimate|view|relight (photo.merlin|window))'
 run_all "$docs/photographs.md" .
 present photo.merlin/relit/{relit.png,orbit.png,orbit.webp} lit.jpg window/relit/relit.png dome/dome_049.png dome/dome.lp
 mapfile -t files < <(awk '/^## / { on = $0 == "## What is written" } on && match($0, /^\| `[a-z.]*`/) { print substr($0, 4, RLENGTH - 4) }' "$docs/photographs.md")
@@ -92,8 +92,9 @@ echo "many lights"
 take_pictures
 run_all "$MERLIN_SOURCE_DIR/README.md" 'merlin (stereo|relight surface)'
 run_all "$docs/captures.md" .
+run_all "$docs/viewer.md" .
 present lights/lights.txt surface/{mesh.glb,mesh.ply,mesh.obj,overview.png,error.png} surface/relit/relit.png
-present photo.merlin/stereo/mesh.glb
+present photo.merlin/stereo/mesh.glb photo.merlin/viewer.html owl.html
 paste -d ' ' <(tail -n +2 dome.lp) <(grep -v '^#' lights/lights.txt) |
     awk '{ if ($2 * $5 + $3 * $6 + $4 * $7 < 0.9986) exit 1; n++ } END { if (n != 20) exit 1 }' ||
     complain "the ball's lights are not within three degrees: $(cat lights/lights.txt)"
@@ -114,7 +115,7 @@ mv dome owl
 # Every program begins with the headers; where a call goes wrong it says so.
 blocks "$docs/library.md" | awk '/^#include </ && !head { number++ } { head = /^#include </ }
     { print > (("program" number) (head ? ".h" : ".body")) }'
-for number in 1 2; do
+for number in 1 2 3; do
     {
         printf '#include <stdio.h>\n'
         cat program$number.h
@@ -126,6 +127,6 @@ for number in 1 2; do
     cc program$number.c $(pkg-config --cflags --libs merlin) -o program$number 2>stderr || complain "program $number: $(cat stderr)"
     ./program$number >stdout 2>&1 || complain "program $number: $(cat stdout)"
 done
-present relit.png owl.glb
+present relit.png owl.glb cup.html
 
 finish

@@ -11,6 +11,7 @@
 #include "base/text/report.h"
 #include "cli/check_replaced.h"
 #include "cli/commands.h"
+#include "cli/page.h"
 #include "cli/stage_bar.h"
 #include "cli/stereo/stereo_commands.h"
 #include "cli/stereo/stereo_folder.h"
@@ -23,6 +24,7 @@
 #include "command/photo_hint.h"
 #include "command/photos.h"
 #include "command/standard_input.h"
+#include "estimate/surface/crop.h"
 #include "stereo/fit/albedo_scale.h"
 
 static const char help[] =
@@ -55,6 +57,7 @@ static const char help[] =
     "      --integrate HOW  ls (default) or edges: depth may jump\n"
     "      --mesh FILE      .ply, .obj or .glb; may be given again (default: mesh.ply, mesh.obj, mesh.glb in the "
     "output)\n"
+    "      --html           write viewer.html, too: a page in which a browser lights the surface (merlin view)\n"
     "  -o, --output DIR     where to (default: stereo inside DIR, or inside the photograph's name + .merlin)\n"
     "      --model W, --size N, --views N, --exposure EV, --point X,Y, --box X,Y,W,H\n"
     "                       for a PHOTO, as in merlin estimate; --model also for MAPS\n"
@@ -163,6 +166,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"linear", .flag = &r->linear},
         {"integrate", .take = take_integration, .into = &r->folder},
         {"mesh", .take = mesh_take_name, .into = &r->files.mesh, .many = true},
+        {"html", .flag = &r->files.page},
         {"model", .text = &r->weights},
         {"size", .take = photo_take_size, .into = &r->params},
         {"views", .integer = &r->params.views, .low = 1, .high = 8},
@@ -231,6 +235,12 @@ static void put_words(cJSON *report, const char *input, const stereo_result *res
     if (result->skipped.count) skipped_json(&result->skipped, input, json_put_array(report, "skipped"));
 }
 
+static void doubt_page(stereo_result *result)
+{
+    crop_square c;
+    if (crop_around(&result->mask, &c) == OK) page_doubt(c.side, 0, &result->doubts);
+}
+
 /* What the stages cost beside one another is about the same for pictures of any number and size: seconds that twenty of
  * 2048×2048 took two processors. Of one photograph the draws are what is solved. */
 static void plan(const request *r, stage_bar *bar)
@@ -278,10 +288,12 @@ static status work(request *r, const char *output, cJSON *report)
         json_put_text(report, "error_map", result.error_name);
         json_put_number(report, "error_map_white", (double)result.error_white);
         json_put_text(report, "integration", r->folder.params.keep_edges ? "edges" : "ls");
+        if (r->files.page) doubt_page(&result);
         put_words(report, r->input, &result);
         json_put_number(report, "seconds_total", clock_seconds() - began);
         stereo_files files = r->files;
         files.folder = output;
+        files.input = standard_input_name(r->input);
         files.inputs = (const char *const[STAGING_MOST_INPUTS]){r->input, read->mask, read->ambient, read->lights};
         files.stop = cli_interrupted;
         watch_tell(&shown, "writing", 0);

@@ -7,6 +7,8 @@
 #include "base/file.h"
 #include "base/json/json_put.h"
 #include "base/parallel.h"
+#include "cli/page.h"
+#include "cli/stereo/stereo_maps.h"
 #include "cli/stereo/stereo_view.h"
 #include "estimate/files/map_png.h"
 #include "estimate/files/maps_files.h"
@@ -167,6 +169,19 @@ static status write_all(const stereo_files *files, const staging *t, const stere
     return s == OK ? write_report(report, staging_path(t, "report.json", path)) : s;
 }
 
+/* The page of the maps as relight reads them. */
+static status write_page(const stereo_files *files, const staging *t)
+{
+    char path[PATH_MAX], *folder = file_folder_of(staging_path(t, "maps.exr", path));
+    merlin_maps maps = {0};
+    status s = folder ? stereo_maps_read(folder, &maps) : fail(MERLIN_NO_MEMORY, "no memory for a file name");
+    const page_source of = {files->input, files->folder, 0, true};
+    if (s == OK) s = page_write(&maps, &of, staging_path(t, PAGE_FILE, path));
+    merlin_maps_free(&maps);
+    free(folder);
+    return s;
+}
+
 static status write_named_mesh(const void *result, const char *path)
 {
     return write_mesh(result, path);
@@ -186,6 +201,7 @@ status stereo_write(const stereo_files *files, const stereo_result *r, const cJS
     status s = staging_begin(files->folder, files->inputs, &t[0]);
     if (s != OK) return s;
     s = write_all(files, t[0], r, report);
+    if (s == OK && files->page) s = write_page(files, t[0]);
     for (int i = 0; i < files->mesh.count && s == OK; i++) {
         s = stage_mesh(files, t[0], files->mesh.at[i], r, &t[count]);
         count += t[count] != NULL;

@@ -12,7 +12,7 @@ static const cli_command commands[] = {
 
 int main(int argc, char **argv)
 {
-    static const char *const of_merlin[] = {"estimate", "relight", "stereo", "info", NULL};
+    static const char *const of_merlin[] = {"estimate", "relight", "view", "stereo", "info", NULL};
     static const program lab = {
         .name = "merlin-lab",
         .about = "Training data, training and evaluation of the models that merlin takes photographs apart with.",

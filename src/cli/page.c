@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT */
+#include "cli/page.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+
+/* A photograph's or a folder's own name without its ending: "cup" of photos/cup.jpg and of photos/cup.merlin;
+ * malloc'ed.
+ */
+static char *name_of(const char *path)
+{
+    char *whole = realpath(path, NULL); /* of "." and "cup/", too; NULL of standard input */
+    char *name = strdup(file_name_of(whole ? whole : path));
+    free(whole);
+    char *ending = name ? strrchr(name, '.') : NULL;
+    if (ending && ending != name) *ending = 0;
+    return name;
+}
+
+status page_write(const merlin_maps *maps, const page_source *of, const char *path)
+{
+    char *name = name_of(of->input);
+    if (!name) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
+    const merlin_view_params params = {.name = name, .folder = of->folder, .side = of->side, .captured = of->captured};
+    status s = merlin_view_write(maps, &params, path);
+    free(name);
+    return s;
+}
+
+double page_cost(double pixels)
+{
+    return 0.2 + 0.3 * pixels / 1e6;
+}
+
+void page_doubt(int square, int side, warnings *doubts)
+{
+    const int most = side ? side : MERLIN_VIEW_SIDE;
+    if (square > most)
+        warnings_add(doubts, "page_reduced",
+                     "the page has %d of the object's %d pixels a side: view --size takes up to %d", most, square,
+                     MERLIN_VIEW_MOST_SIDE);
+}
