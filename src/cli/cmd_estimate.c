@@ -28,8 +28,8 @@
 #include "command/standard_input.h"
 #include "estimate/files/maps_files.h"
 #include "estimate/light/light_words.h"
-#include "estimate/photo/doubts.h"
 #include "estimate/photo/model_pair.h"
+#include "estimate/photo/photo_doubts.h"
 #include "estimate/photo/photo_object.h"
 
 static const char help[] =

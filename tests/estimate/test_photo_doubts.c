@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Tests what merlin_maps' doubts say of photographs, by maps that are made here. */
 #include "base/api_needs.h"
-#include "estimate/photo/doubts.h"
+#include "estimate/photo/photo_doubts.h"
 #include "merlin/merlin.h"
 
 #include <setjmp.h>

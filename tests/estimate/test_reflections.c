@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "estimate/light/lobe.h"
+#include "estimate/light/lobe_sampler.h"
 #include "optics/camera.h"
 #include "surroundings.h"
 

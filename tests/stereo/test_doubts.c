@@ -15,7 +15,7 @@
 #include "base/rng.h"
 #include "image/color.h"
 #include "relief.h"
-#include "stereo/doubts/doubts.h"
+#include "stereo/doubts/capture_doubts.h"
 
 enum { SIZE = 72, LIGHTS = 12 };
 

@@ -24,8 +24,8 @@
 #include "command/photo_hint.h"
 #include "command/photos.h"
 #include "command/standard_input.h"
-#include "estimate/photo/doubts.h"
 #include "estimate/photo/model_pair.h"
+#include "estimate/photo/photo_doubts.h"
 #include "estimate/relight/relighter.h"
 
 static const char help[] =

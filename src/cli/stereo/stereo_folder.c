@@ -6,7 +6,7 @@
 #include "base/json/json_put.h"
 #include "base/progress.h"
 #include "command/json_line.h"
-#include "stereo/doubts/doubts.h"
+#include "stereo/doubts/capture_doubts.h"
 #include "stereo/integrate/surface_error.h"
 #include "stereo/methods/place_lights.h"
 

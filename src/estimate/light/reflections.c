@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/parallel.h"
-#include "estimate/light/lobe.h"
+#include "estimate/light/lobe_sampler.h"
 #include "optics/brdf.h"
 #include "optics/camera.h"
 

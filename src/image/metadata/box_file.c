@@ -20,7 +20,7 @@ bool box_name_is(byte_source *from, uint64_t at, const char name[4])
 }
 
 /* Reads the header of the box at a position. */
-static bool read_box(byte_source *from, uint64_t at, uint64_t end, box *out)
+static bool read_box(byte_source *from, uint64_t at, uint64_t end, media_box *out)
 {
     if (at + 8 > end) return false;
     uint64_t size = box_number(from, at, 4), head = 8;
@@ -30,12 +30,12 @@ static bool read_box(byte_source *from, uint64_t at, uint64_t end, box *out)
     }
     if (size == 0) size = end - at;
     if (size < head || size > end - at) return false;
-    *out = (box){at + head, at + size};
+    *out = (media_box){at + head, at + size};
     return true;
 }
 
 /* Finds a box; its name follows four bytes of size in every variant. */
-bool box_find(byte_source *from, box in, const char name[4], box *out)
+bool box_find(byte_source *from, media_box in, const char name[4], media_box *out)
 {
     uint64_t at = in.at;
     for (int i = 0; i < BOX_MOST_STEPS && read_box(from, at, in.end, out); i++) {
@@ -46,10 +46,10 @@ bool box_find(byte_source *from, box in, const char name[4], box *out)
 }
 
 /* Reads the colour property with this number, counted from 1, if it is stated by code points. */
-static bool read_property(byte_source *from, box properties, uint64_t place, int numbers[3])
+static bool read_property(byte_source *from, media_box properties, uint64_t place, int numbers[3])
 {
     uint64_t at = properties.at;
-    box one;
+    media_box one;
     for (uint64_t i = 1; i < place; i++) {
         if (!read_box(from, at, properties.end, &one)) return false;
         at = one.end;
@@ -63,7 +63,7 @@ static bool read_property(byte_source *from, box properties, uint64_t place, int
 }
 
 /* Searches the table that associates items with properties. */
-static bool find_colour(byte_source *from, box table, box properties, uint64_t item, int numbers[3])
+static bool find_colour(byte_source *from, media_box table, media_box properties, uint64_t item, int numbers[3])
 {
     enum { MOST_PLACES = 512 };
     int bytes = box_number(from, table.at, 1) ? 4 : 2, wide = box_number(from, table.at + 3, 1) & 1 ? 2 : 1;
@@ -84,8 +84,8 @@ static bool find_colour(byte_source *from, box table, box properties, uint64_t i
 
 bool box_read_colour(byte_source *from, int numbers[3])
 {
-    box meta, meant, all, properties, table;
-    if (!box_find(from, (box){0, INT64_MAX}, "meta", &meta)) return false;
+    media_box meta, meant, all, properties, table;
+    if (!box_find(from, (media_box){0, INT64_MAX}, "meta", &meta)) return false;
     meta.at += 4;
     if (!box_find(from, meta, "pitm", &meant) || !box_find(from, meta, "iprp", &all)) return false;
     uint64_t item = box_number(from, meant.at + 4, box_number(from, meant.at, 1) ? 4 : 2);

@@ -11,16 +11,16 @@
 
 enum { BOX_MOST_STEPS = 4096 };
 
-typedef struct box {
+typedef struct media_box {
     uint64_t at, end; /* range of the content */
-} box;
+} media_box;
 
 /* Reads a big-endian number of so many bytes at a position; 0 at the file's end. */
 uint64_t box_number(byte_source *from, uint64_t at, int bytes);
 /* Tells whether these four letters are at a position. */
 bool box_name_is(byte_source *from, uint64_t at, const char name[4]);
 /* Finds the first box of a name inside `in`. */
-bool box_find(byte_source *from, box in, const char name[4], box *out);
+bool box_find(byte_source *from, media_box in, const char name[4], media_box *out);
 
 /* Reads what a HEIC or AVIF states about its primary picture's codes beside a profile: primaries, transfer and matrix
  * as code points of ITU-T H.273. Returns false if it states nothing. */

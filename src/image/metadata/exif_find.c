@@ -67,10 +67,10 @@ static bool find_in_webp(byte_source *from, exif_place *out)
 /* ---- HEIC and AVIF: nested boxes ---- */
 
 /* Returns the number of the item that is EXIF, by the table of items; 0 if there is none. */
-static uint64_t exif_item(byte_source *from, box table)
+static uint64_t exif_item(byte_source *from, media_box table)
 {
     uint64_t version = box_number(from, table.at, 1), counter = version == 0 ? 2 : 4;
-    box rest = {table.at + 4 + counter, table.end}, entry;
+    media_box rest = {table.at + 4 + counter, table.end}, entry;
     for (int i = 0; i < MOST_STEPS && box_find(from, rest, "infe", &entry); i++) {
         version = box_number(from, entry.at, 1);
         int bytes = version == 2 ? 2 : 4;
@@ -82,7 +82,7 @@ static uint64_t exif_item(byte_source *from, box table)
 }
 
 /* Finds an item's only extent, from the file's start. */
-static bool find_item(byte_source *from, box table, uint64_t item, exif_place *out)
+static bool find_item(byte_source *from, media_box table, uint64_t item, exif_place *out)
 {
     uint64_t version = box_number(from, table.at, 1), sizes = box_number(from, table.at + 4, 2);
     int offset = sizes >> 12 & 15, length = sizes >> 8 & 15, base = sizes >> 4 & 15, index = version ? sizes & 15 : 0;
@@ -110,9 +110,9 @@ static bool find_item(byte_source *from, box table, uint64_t item, exif_place *o
 /* Finds the EXIF item, which begins with the offset of its TIFF header. */
 static bool find_in_heif(byte_source *from, exif_place *out)
 {
-    box all = {0, INT64_MAX}, meta, table;
+    media_box all = {0, INT64_MAX}, meta, table;
     if (!box_find(from, all, "meta", &meta)) return false;
-    box inside = {meta.at + 4, meta.end};
+    media_box inside = {meta.at + 4, meta.end};
     uint64_t item = box_find(from, inside, "iinf", &table) ? exif_item(from, table) : 0;
     if (!item || !box_find(from, inside, "iloc", &table) || !find_item(from, table, item, out)) return false;
     uint64_t skip = 4 + box_number(from, out->at, 4);
@@ -123,7 +123,7 @@ static bool find_in_heif(byte_source *from, exif_place *out)
 static bool find_in_cr3(byte_source *from, exif_place *out)
 {
     enum { NAME_OF_PRIVATE = 16 };
-    box all = {0, INT64_MAX}, movie, private, page;
+    media_box all = {0, INT64_MAX}, movie, private, page;
     if (!box_find(from, all, "moov", &movie) || !box_find(from, movie, "uuid", &private)) return false;
     private.at += NAME_OF_PRIVATE;
     return box_find(from, private, "CMT2", &page) && is_place(page.at, page.end - page.at, out);

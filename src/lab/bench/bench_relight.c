@@ -7,23 +7,23 @@
 
 enum { SIDE = 256 };
 
-typedef struct relight_work {
+typedef struct relight_bench {
     merlin_model *model;
     merlin_maps maps;
     merlin_relighting how;
     merlin_relighter *relighter;
-} relight_work;
+} relight_bench;
 
 static status make_relighter(void *context)
 {
-    relight_work *w = context;
+    relight_bench *w = context;
     merlin_relighter_free(w->relighter);
     return merlin_relighter_new(w->model, &w->maps, SIDE, w->how, &w->relighter);
 }
 
 static status render(void *context)
 {
-    relight_work *w = context;
+    relight_bench *w = context;
     static const float from_the_left[3] = {-0.67f, 0.47f, -0.43f};
     merlin_image picture;
     status s = merlin_relighter_render(w->relighter, from_the_left, NULL, &picture);
@@ -31,7 +31,7 @@ static status render(void *context)
     return s;
 }
 
-static status estimate_ball(relight_work *w)
+static status estimate_ball(relight_bench *w)
 {
     img ball;
     status s = bench_ball(&ball);
@@ -44,7 +44,7 @@ static status estimate_ball(relight_work *w)
 
 status bench_relight(const char *weights, bench_budget patience, bench_relighting *out)
 {
-    relight_work w = {0};
+    relight_bench w = {0};
     status s = merlin_model_open(weights, &w.model);
     if (s == OK) s = estimate_ball(&w);
     for (int i = 0; i < BENCH_WAYS && s == OK; i++) {

@@ -13,7 +13,7 @@
 #include "lab/cli/eval_commands.h"
 #include "lab/cli/lab_commands.h"
 #include "lab/eval/samples/evaluate.h"
-#include "lab/eval/samples/report.h"
+#include "lab/eval/samples/sample_report.h"
 #include "lab/eval/samples/trivial.h"
 
 static const char help[] =

@@ -7,7 +7,7 @@
 #include "base/rng.h"
 #include "base/vec.h"
 #include "lab/train/dataset.h"
-#include "lab/train/photograph.h"
+#include "lab/train/train_camera.h"
 #include "lab/train/train_config.h"
 
 /* Random streams for rng_at. */

@@ -8,7 +8,7 @@
 #include "base/number.h"
 #include "stereo/calibrate/calibrate_parts.h"
 #include "stereo/capture/capture_parts.h"
-#include "stereo/doubts/doubts.h"
+#include "stereo/doubts/capture_doubts.h"
 #include "stereo/fit/pixel_fit.h"
 
 static float grey(const uint16_t *pixel, int channels)

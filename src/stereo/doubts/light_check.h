@@ -8,7 +8,7 @@
 #define MERLIN_STEREO_DOUBTS_LIGHT_CHECK_H
 
 #include "base/warnings.h"
-#include "stereo/integrate/surface.h"
+#include "stereo/integrate/stereo_surface.h"
 
 /* Checks a solved capture whose lights are known. */
 status pst_check_lights(const merlin_capture *c, const merlin_surface *s, warnings *out);

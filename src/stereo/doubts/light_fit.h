@@ -8,7 +8,7 @@
 #ifndef MERLIN_STEREO_DOUBTS_LIGHT_FIT_H
 #define MERLIN_STEREO_DOUBTS_LIGHT_FIT_H
 
-#include "stereo/integrate/surface.h"
+#include "stereo/integrate/stereo_surface.h"
 
 enum { PST_CHECKED_PICTURES = 96 };
 

@@ -7,7 +7,7 @@
 #define MERLIN_STEREO_DOUBTS_MODEL_CHECK_H
 
 #include "base/warnings.h"
-#include "stereo/integrate/surface.h"
+#include "stereo/integrate/stereo_surface.h"
 
 /* Adds other_distance, other_lens, other_tones and strengths_unequal, where they hold, naming what fits better: found
  * by solving a small version of the pictures again under each. */

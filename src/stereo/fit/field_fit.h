@@ -10,7 +10,7 @@
 
 #include "stereo/fit/fall_off.h"
 #include "stereo/fit/field.h"
-#include "stereo/integrate/surface.h"
+#include "stereo/integrate/stereo_surface.h"
 
 /* cost: the pixels' robust losses, summed in their order whatever the number of threads. */
 status pst_field_fit(const pst_field *f, double *cost);

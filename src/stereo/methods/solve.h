@@ -7,7 +7,7 @@
 #ifndef MERLIN_STEREO_METHODS_SOLVE_H
 #define MERLIN_STEREO_METHODS_SOLVE_H
 
-#include "stereo/integrate/surface.h"
+#include "stereo/integrate/stereo_surface.h"
 
 /* Fills all of the surface but its depth, unless the method finds that, too. MERLIN_STOPPED where params say so. */
 status pst_solve(const merlin_capture *c, const merlin_stereo_params *params, merlin_surface *out);

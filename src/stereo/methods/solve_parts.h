@@ -4,7 +4,7 @@
 #define MERLIN_STEREO_METHODS_SOLVE_PARTS_H
 
 #include "stereo/fit/problem.h"
-#include "stereo/integrate/surface.h"
+#include "stereo/integrate/stereo_surface.h"
 
 status pst_solve_ls(const pst_problem *p, merlin_surface *out);
 status pst_solve_robust(const pst_problem *p, merlin_surface *out);

@@ -7,7 +7,7 @@
 #define MERLIN_STEREO_METHODS_UNLIT_H
 
 #include "stereo/fit/problem.h"
-#include "stereo/integrate/surface.h"
+#include "stereo/integrate/stereo_surface.h"
 
 /* Makes the normals of pixels that are dark in every picture the smoothest that join those around them (harmonic,
  * component by component); what has no lit pixel around it faces the camera. */

@@ -14,7 +14,7 @@
 #include "base/file.h"
 #include "estimate/photo/network.h"
 #include "lab/eval/samples/evaluate.h"
-#include "lab/eval/samples/report.h"
+#include "lab/eval/samples/sample_report.h"
 #include "lab/eval/samples/truth.h"
 #include "lab/render/generate.h"
 #include "scratch.h"

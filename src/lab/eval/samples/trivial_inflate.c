@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "stereo/uncalibrated/inflate.h"
 #include "base/number.h"
 #include "lab/eval/metrics/metrics.h"
 #include "lab/eval/samples/trivial.h"
 #include "optics/camera.h"
 #include "optics/light.h"
+#include "stereo/uncalibrated/inflate.h"
 
 status eval_inflate(const eval_photo *photo, const img *mask, const eval_means *means, surface *out)
 {

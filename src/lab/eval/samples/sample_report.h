@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* An evaluation as a table for a person and as JSON for a program. */
-#ifndef MERLIN_LAB_EVAL_SAMPLES_REPORT_H
-#define MERLIN_LAB_EVAL_SAMPLES_REPORT_H
+#ifndef MERLIN_LAB_EVAL_SAMPLES_SAMPLE_REPORT_H
+#define MERLIN_LAB_EVAL_SAMPLES_SAMPLE_REPORT_H
 
 #include <stdio.h>
 

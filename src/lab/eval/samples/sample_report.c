@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "lab/eval/samples/report.h"
+#include "lab/eval/samples/sample_report.h"
 
 #include <cjson/cJSON.h>
 #include <math.h>

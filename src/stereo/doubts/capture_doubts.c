@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "stereo/doubts/doubts.h"
+#include "stereo/doubts/capture_doubts.h"
 
 #include <math.h>
 #include <stdlib.h>

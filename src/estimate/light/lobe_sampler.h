@@ -8,8 +8,8 @@
  * By importance sampling of the half vectors, the same 64 places on the lobe for every point, each looked up as a mean
  * over the solid angle that it stands for (Křivánek & Colbert 2008). There is no noise; a lamp's highlight is off by up
  * to a tenth of its peak. */
-#ifndef MERLIN_ESTIMATE_LIGHT_LOBE_H
-#define MERLIN_ESTIMATE_LIGHT_LOBE_H
+#ifndef MERLIN_ESTIMATE_LIGHT_LOBE_SAMPLER_H
+#define MERLIN_ESTIMATE_LIGHT_LOBE_SAMPLER_H
 
 #include "estimate/light/env_map.h"
 #include "estimate/light/horizon.h"

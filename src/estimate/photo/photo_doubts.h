@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Why the maps of a photograph may be wrong: merlin_maps' doubts found, and put into words. */
-#ifndef MERLIN_ESTIMATE_PHOTO_DOUBTS_H
-#define MERLIN_ESTIMATE_PHOTO_DOUBTS_H
+#ifndef MERLIN_ESTIMATE_PHOTO_PHOTO_DOUBTS_H
+#define MERLIN_ESTIMATE_PHOTO_PHOTO_DOUBTS_H
 
 #include "base/warnings.h"
 #include "estimate/photo/light_cues.h"

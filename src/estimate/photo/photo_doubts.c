@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "estimate/photo/doubts.h"
+#include "estimate/photo/photo_doubts.h"
 
 #include <math.h>
 #include <stdio.h>

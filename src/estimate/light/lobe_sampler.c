@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "estimate/light/lobe.h"
+#include "estimate/light/lobe_sampler.h"
 
 #include <math.h>
 

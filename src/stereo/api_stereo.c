@@ -8,7 +8,7 @@
 
 #include "base/api_needs.h"
 #include "mesh/write/mesh_write.h"
-#include "stereo/doubts/doubts.h"
+#include "stereo/doubts/capture_doubts.h"
 #include "stereo/fit/albedo_scale.h"
 #include "stereo/methods/place_lights.h"
 #include "stereo/methods/solve.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* What is done with a surface that photometric stereo has found, and the names of the methods. */
-#ifndef MERLIN_STEREO_INTEGRATE_SURFACE_H
-#define MERLIN_STEREO_INTEGRATE_SURFACE_H
+#ifndef MERLIN_STEREO_INTEGRATE_STEREO_SURFACE_H
+#define MERLIN_STEREO_INTEGRATE_STEREO_SURFACE_H
 
 #include "stereo/capture/capture.h"
 

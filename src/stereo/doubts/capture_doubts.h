@@ -3,11 +3,11 @@
  *
  *     warnings doubts = {0};
  *     status s = pst_doubts(&capture, &surface, &doubts); */
-#ifndef MERLIN_STEREO_DOUBTS_DOUBTS_H
-#define MERLIN_STEREO_DOUBTS_DOUBTS_H
+#ifndef MERLIN_STEREO_DOUBTS_CAPTURE_DOUBTS_H
+#define MERLIN_STEREO_DOUBTS_CAPTURE_DOUBTS_H
 
 #include "base/warnings.h"
-#include "stereo/integrate/surface.h"
+#include "stereo/integrate/stereo_surface.h"
 
 /* Adds lights_do_not_fit, other_distance, other_lens, other_tones, strengths_unequal, mask_inverted, lights_behind,
  * lights_alike, lights_behind_camera, other_unit, same_pictures, burnt_out, lights_in_order, strengths_unsure,

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Camera simulation for training: from radiance to the encoded picture that the network sees, with the faults of
  * cameras and of cut-out masks. All random numbers come from the generators that are passed in. */
-#ifndef MERLIN_LAB_TRAIN_PHOTOGRAPH_H
-#define MERLIN_LAB_TRAIN_PHOTOGRAPH_H
+#ifndef MERLIN_LAB_TRAIN_TRAIN_CAMERA_H
+#define MERLIN_LAB_TRAIN_TRAIN_CAMERA_H
 
 #include "base/rng.h"
 #include "image/write/jpeg.h"

@@ -8,7 +8,7 @@
 #include "estimate/files/maps_files.h"
 #include "estimate/light/found_light.h"
 #include "estimate/light/light_words.h"
-#include "estimate/photo/doubts.h"
+#include "estimate/photo/photo_doubts.h"
 #include "estimate/surface/exposure.h"
 
 typedef struct range {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "stereo/integrate/surface.h"
+#include "stereo/integrate/stereo_surface.h"
 
 #include <stdlib.h>
 #include <string.h>
