@@ -19,7 +19,7 @@
 #include "command/json_line.h"
 #include "command/options.h"
 #include "command/photos.h"
-#include "estimate/photo/doubts.h"
+#include "estimate/photo/photo_doubts.h"
 #include "merlin/view.h"
 
 static const char help[] =
