@@ -98,8 +98,11 @@ static status announce(const request *r, const merlin_maps *maps, const char *fo
     if (!r->quiet) warnings_print(&doubts, "view", r->input, WARNINGS_MOST);
     if (r->json) return print_json(r, folder, written, &doubts, seconds);
     if (!r->quiet)
-        printf("%s: %s (%.2f s, %s)\n", r->input, r->output ? r->output : written->at[0], seconds,
-               written_words(written, amount));
+        printf("%s: %s (%.2f s, %s)\n", r->input,
+               r->output        ? r->output
+               : written->count ? written->at[0]
+                                : folder,
+               seconds, written_words(written, amount));
     return OK;
 }
 

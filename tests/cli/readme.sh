@@ -115,7 +115,7 @@ mv dome owl
 # Every program begins with the headers; where a call goes wrong it says so.
 blocks "$docs/library.md" | awk '/^#include </ && !head { number++ } { head = /^#include </ }
     { print > (("program" number) (head ? ".h" : ".body")) }'
-for number in 1 2 3; do
+for number in 1 2 3 4; do
     {
         printf '#include <stdio.h>\n'
         cat program$number.h
