@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What pointers, wheel and keys do on the picture. `viewer` does the work (main.js).
+// What pointers, wheel and keys do on the picture. `viewer` does the work (viewer.js).
 
 const CLICK = 5; // screen pixels that a click may move
 const STEP = 0.03, FURTHER = 5, TURN_STEP = 5, PAN_STEP = 60, ZOOM_STEP = 1.25;

@@ -84,7 +84,7 @@ radiance room.hdr 32 6 64
 run_all "$MERLIN_SOURCE_DIR/README.md" 'merlin (estimate|view|relight (photo.merlin|window))'
 run_all "$docs/photographs.md" .
 present photo.merlin/relit/{relit.png,orbit.png,orbit.webp} lit.jpg window/relit/relit.png dome/dome_049.png dome/dome.lp
-mapfile -t files < <(awk '/^## / { on = $0 == "## What is written" } on && match($0, /^\| `[a-z.]*`/) { print substr($0, 4, RLENGTH - 4) }' "$docs/photographs.md")
+mapfile -t files < <(awk '/^## / { on = $0 == "## Output" } on && match($0, /^\| `[a-z.]*`/) { print substr($0, 4, RLENGTH - 4) }' "$docs/photographs.md")
 ((${#files[@]} > 8)) || complain "the table of files has only ${files[*]}"
 present "${files[@]/#/photo.merlin/}"
 
@@ -115,7 +115,7 @@ mv dome owl
 # Every program begins with the headers; where a call goes wrong it says so.
 blocks "$docs/library.md" | awk '/^#include </ && !head { number++ } { head = /^#include </ }
     { print > (("program" number) (head ? ".h" : ".body")) }'
-for number in 1 2 3 4; do
+for number in 1 2 3 4 5; do
     {
         printf '#include <stdio.h>\n'
         cat program$number.h
