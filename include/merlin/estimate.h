@@ -43,6 +43,9 @@ typedef struct merlin_hint {
     } box; /* holds all of the object, the tighter the better; width 0: none */
 } merlin_hint;
 
+/* Bounds of params.size, a multiple of the last. */
+enum { MERLIN_LEAST_SIZE = 64, MERLIN_LARGEST_SIZE = 512, MERLIN_SIZE_STEP = 32 };
+
 typedef struct merlin_params {
     int size;  /* side of the square the network sees: a multiple of 32, from 64 to 512. It was trained at 256; of
                 * more it takes fine normals alone, if the photograph shows the object so large */
@@ -51,10 +54,14 @@ typedef struct merlin_params {
                         * any unit), to the brightness of the training data */
     float exposure;    /* EV on top if auto_exposure is 0, within 20 */
     int (*stop)(void); /* asked between stages; returning nonzero ends the work with MERLIN_STOPPED; may be NULL */
-    merlin_shot shot;  /* of the photograph: its lens, and doubts in its maps */
-    int flash;         /* 1: its light was a flash at the lens and nothing else, which models of any light are told */
-    float fov;         /* degrees that the photograph is wide, from 1 to 150; 0: by shot, if that knows the lens */
-    merlin_hint hint;  /* where the object is, if it is searched for; MERLIN_WRONG_USE with a mask */
+    merlin_progress progress; /* told of "estimating" and "refining"; may be NULL */
+    void *progress_context;
+    merlin_shot shot; /* of the photograph: its lens, and doubts in its maps */
+    int flash;        /* 1: its light was a flash at the lens and nothing else, which models of any light are told */
+    float fov;        /* degrees that the photograph is wide, from 1 to 150; 0: by shot, if that knows the lens */
+    merlin_hint hint; /* where the object is, if it is searched for; MERLIN_WRONG_USE with a mask */
+    int last; /* 1: no photograph follows: the model lets go of what it would keep for the next one, as early as it can.
+               * It writes these maps and relights them as well as ever */
 } merlin_params;
 
 merlin_params merlin_params_default(void); /* 512, 4 views, automatic, never stopped */
@@ -64,6 +71,29 @@ merlin_params merlin_params_default(void); /* 512, 4 views, automatic, never sto
  * the object is searched for. params NULL: the defaults. */
 merlin_status merlin_estimate(merlin_model *model, const merlin_image *photo, const merlin_image *mask,
                               const merlin_params *params, merlin_maps *maps);
+
+/* ---- the same in two steps ---- */
+
+/* Which part of a photograph is the object: to be shown to a person, who may know better, or to be found while the
+ * model is still opened by another thread. */
+typedef struct merlin_object {
+    merlin_image mask; /* 1, coverage in [0, 1], of the photograph's size */
+    merlin_mask_source source;
+    float confidence; /* 1 for a given mask; how likely a found one is right, in [0, 1] */
+    double seconds;   /* that it took */
+} merlin_object;
+
+/* Finds it. photo, mask and hint: as of merlin_estimate; mask and hint may be NULL. */
+merlin_status merlin_object_find(const merlin_image *photo, const merlin_image *mask, const merlin_hint *hint,
+                                 merlin_object *out);
+void merlin_object_free(merlin_object *object);
+/* As merlin_estimate, but for params.hint. Photograph and object are taken over, and are empty when it returns,
+ * whatever it returns: a large photograph is freed before its maps need the memory. */
+merlin_status merlin_estimate_object(merlin_model *model, merlin_image *photo, merlin_object *object,
+                                     const merlin_params *params, merlin_maps *maps);
+/* Does now what the first photograph by these params would begin with, which takes some tenths of a second: while that
+ * is read, and its object found, by another thread. */
+merlin_status merlin_model_prepare(merlin_model *model, const merlin_params *params);
 
 #ifdef __cplusplus
 }

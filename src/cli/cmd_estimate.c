@@ -28,9 +28,7 @@
 #include "command/standard_input.h"
 #include "estimate/files/maps_files.h"
 #include "estimate/light/light_words.h"
-#include "estimate/photo/model_pair.h"
 #include "estimate/photo/photo_doubts.h"
-#include "estimate/photo/photo_object.h"
 
 static const char help[] =
     "usage: merlin estimate PHOTO... [options]\n"
@@ -240,9 +238,8 @@ static status write_more(const void *context, const merlin_maps *maps, maps_stag
     return s;
 }
 
-/* From the photograph in memory to files; photograph and object are taken over. */
-static status take_apart(const request *r, const photo_job *job, merlin_image *photo, photo_object *object,
-                         lap_times *laps)
+/* Takes the photograph, which is in memory and empty afterwards, to files. */
+static status take_apart(const request *r, const photo_job *job, photo_taken *taken, lap_times *laps)
 {
     double began = clock_seconds(), clock = began;
     const bool last = job == &r->photos->at[r->photos->count - 1];
@@ -250,9 +247,11 @@ static status take_apart(const request *r, const photo_job *job, merlin_image *p
     staged_files written = {0};
     const char *const inputs[STAGING_MOST_INPUTS] = {job->photo, job->mask};
     more_work more = {r, job, inputs};
-    plan(r, (double)photo->width * photo->height);
-    object->watch = r->watch;
-    object->last = last;
+    merlin_params params = r->params;
+    params.progress = r->watch->tell;
+    params.progress_context = r->watch->context;
+    params.last = last;
+    plan(r, (double)taken->photo.width * taken->photo.height);
     maps_output to = {.folder = job->output,
                       .inputs = inputs,
                       .stop = cli_interrupted,
@@ -261,7 +260,7 @@ static status take_apart(const request *r, const photo_job *job, merlin_image *p
                       .more = write_more,
                       .context = &more,
                       .written = &written};
-    status s = estimate_object(r->model, photo, object, &r->params, &maps);
+    status s = photo_estimate(r->model, taken, &params, &maps);
     if (s != OK) s = fail_in(s, "%s", job->photo);
     lap(&clock);
     if (s == OK) s = maps_write(r->model, &maps, &to);
@@ -275,37 +274,35 @@ static status take_apart(const request *r, const photo_job *job, merlin_image *p
 
 static status estimate_one(const request *r, const photo_job *job)
 {
-    merlin_image photo;
-    photo_object object;
+    photo_taken taken;
     lap_times laps = {0};
-    status s = photo_read_object(job, &photo, &object, &laps.read);
-    laps.mask = object.seconds;
-    return s == OK ? take_apart(r, job, &photo, &object, &laps) : s;
+    status s = photo_take(job, &taken);
+    laps.read = taken.read_seconds;
+    laps.mask = taken.object.seconds;
+    return s == OK ? take_apart(r, job, &taken, &laps) : s;
 }
 
-/* The first photograph is read and its object found while the weights are read and the network made ready. */
+/* Reads the first photograph, and finds its object, while the weights are read and the network made ready. */
 static status estimate_first(request *r, const photo_job *job, bool *ready, bool *broken)
 {
-    merlin_image photo;
-    photo_object object;
+    photo_taken taken;
     lap_times laps = {.start = (double)clock() / CLOCKS_PER_SEC};
     double now = clock_seconds();
     photo_ahead first;
     photo_begin(&first, job);
-    status opened = model_open_pair(r->weights, r->flash_weights, &r->model), s = OK;
+    status opened = photo_open_models(r->weights, r->flash_weights, &r->model), s = OK;
     laps.model = lap(&now);
-    if (opened == OK) opened = model_prepare(r->model, &r->params);
+    if (opened == OK) opened = merlin_model_prepare(r->model, &r->params);
     *ready = opened == OK;
     *broken = !*ready;
     laps.compile = lap(&now);
     char words[1024];
     if (opened != OK) snprintf(words, sizeof words, "%s", status_message());
-    s = photo_finish(&first, &photo, &object);
+    s = photo_finish(&first, &taken);
     laps.read = lap(&now);
-    object.seconds = 0; /* they passed beside the others */
-    if (opened == OK) return s == OK ? take_apart(r, job, &photo, &object, &laps) : s;
-    merlin_image_free(&photo);
-    photo_object_free(&object);
+    taken.object.seconds = 0; /* they passed beside the others */
+    if (opened == OK) return s == OK ? take_apart(r, job, &taken, &laps) : s;
+    photo_taken_free(&taken);
     return fail(opened, "%s", words);
 }
 

@@ -8,58 +8,65 @@
 #include "command/photo_folder.h"
 #include "command/photo_hint.h"
 
+void photo_taken_free(photo_taken *taken)
+{
+    merlin_image_free(&taken->photo);
+    merlin_object_free(&taken->object);
+}
+
 /* mask: the job's, else alpha; without data if neither. */
 static status read_both(const photo_job *job, merlin_image *photo, merlin_image *mask)
 {
-    merlin_status s = merlin_image_read(job->photo, photo, job->mask ? NULL : mask);
-    if (s == MERLIN_OK && job->mask) s = merlin_mask_read(job->mask, mask);
-    if (s != MERLIN_OK) merlin_image_free(photo);
-    return (status)s;
-}
-
-status photo_read_object(const photo_job *job, merlin_image *photo, photo_object *object, double *read_seconds)
-{
-    merlin_image mask = {0};
-    double began = clock_seconds();
-    *photo = (merlin_image){0};
-    *object = (photo_object){0};
-    status s = read_both(job, photo, &mask);
-    *read_seconds = clock_seconds() - began;
-    if (s == OK) {
-        s = photo_object_choose(photo, &mask, job->hint, object);
-        (void)merlin_shot_read(job->photo, &object->shot);
-        if (s != OK) s = fail_in(s, "%s", job->photo);
-    }
-    merlin_image_free(&mask);
-    if (s != OK) merlin_image_free(photo);
+    status s = merlin_image_read(job->photo, photo, job->mask ? NULL : mask);
+    if (s == OK && job->mask) s = merlin_mask_read(job->mask, mask);
     return s;
 }
 
+status photo_take(const photo_job *job, photo_taken *out)
+{
+    merlin_image mask = {0};
+    double began = clock_seconds();
+    *out = (photo_taken){.read_seconds = 0};
+    status s = read_both(job, &out->photo, &mask);
+    out->read_seconds = clock_seconds() - began;
+    if (s == OK) {
+        s = merlin_object_find(&out->photo, &mask, job->hint, &out->object);
+        if (s != OK) s = fail_in(s, "%s", job->photo);
+    }
+    if (s == OK) (void)merlin_shot_read(job->photo, &out->shot);
+    merlin_image_free(&mask);
+    if (s != OK) photo_taken_free(out);
+    return s;
+}
+
+status photo_estimate(merlin_model *model, photo_taken *taken, const merlin_params *params, merlin_maps *maps)
+{
+    merlin_params own = params ? *params : merlin_params_default();
+    own.shot = taken->shot;
+    return merlin_estimate_object(model, &taken->photo, &taken->object, &own, maps);
+}
+
 status photo_maps(merlin_model *model, const char *photo, const char *mask, const merlin_params *params,
-                  const watch *shown, merlin_maps *maps)
+                  merlin_maps *maps)
 {
     const merlin_hint *hint = params && photo_hint_given(&params->hint) ? &params->hint : NULL;
     char *own = NULL;
     status s = mask || hint ? OK : photo_own_mask(photo, &own);
     if (s != OK) return s;
     photo_job job = {.photo = (char *)photo, .mask = mask ? (char *)mask : own, .hint = hint};
-    merlin_image picture;
-    photo_object object;
-    double seconds;
-    watch_tell(shown, "reading", 0);
-    s = photo_read_object(&job, &picture, &object, &seconds);
+    photo_taken taken;
+    if (params && params->progress) params->progress(params->progress_context, "reading", 0);
+    s = photo_take(&job, &taken);
     free(own);
     if (s != OK) return s;
-    object.watch = shown;
-    s = estimate_object(model, &picture, &object, params, maps);
+    s = photo_estimate(model, &taken, params, maps);
     return s == OK ? OK : fail_in(s, "%s", photo);
 }
 
-static void *read_photo(void *context)
+static void *take(void *context)
 {
     photo_ahead *ahead = context;
-    double seconds;
-    ahead->result = photo_read_object(ahead->job, &ahead->photo, &ahead->object, &seconds);
+    ahead->result = photo_take(ahead->job, &ahead->taken);
     if (ahead->result != OK) snprintf(ahead->message, sizeof ahead->message, "%s", status_message());
     return NULL;
 }
@@ -67,16 +74,15 @@ static void *read_photo(void *context)
 void photo_begin(photo_ahead *ahead, const photo_job *job)
 {
     *ahead = (photo_ahead){.job = job};
-    ahead->running = pthread_create(&ahead->thread, NULL, read_photo, ahead) == 0;
+    ahead->running = pthread_create(&ahead->thread, NULL, take, ahead) == 0;
 }
 
-status photo_finish(photo_ahead *ahead, merlin_image *photo, photo_object *object)
+status photo_finish(photo_ahead *ahead, photo_taken *out)
 {
     if (ahead->running)
         pthread_join(ahead->thread, NULL);
     else
-        read_photo(ahead);
-    *photo = ahead->photo;
-    *object = ahead->object;
+        take(ahead);
+    *out = ahead->taken;
     return ahead->result == OK ? OK : fail(ahead->result, "%s", ahead->message);
 }

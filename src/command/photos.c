@@ -15,7 +15,7 @@
 #include "command/json_line.h"
 #include "command/photo_folder.h"
 #include "command/photo_hint.h"
-#include "estimate/photo/network.h"
+#include "merlin/estimate.h"
 
 /* ---- names ---- */
 
@@ -334,13 +334,23 @@ status photo_find_models(const char *asked, char **path, char **flash)
     return s == OK ? find_shipped("merlin-point", flash) : s;
 }
 
+status photo_open_models(const char *path, const char *flash, merlin_model **out)
+{
+    status s = merlin_model_open(path, out);
+    if (s == OK && flash) s = merlin_model_add_flash(*out, flash);
+    if (s == OK) return OK;
+    merlin_model_close(*out);
+    *out = NULL;
+    return s;
+}
+
 status photo_take_size(const char *text, void *into)
 {
     merlin_params *params = into;
     long size;
-    status s = cli_int("--size", text, NETWORK_LEAST_SIZE, NETWORK_LARGEST_SIZE, &size);
-    if (s == OK && size % MODEL_SIZE_MULTIPLE != 0)
-        s = fail(MERLIN_WRONG_USE, "--size must be a multiple of %d, not %ld", MODEL_SIZE_MULTIPLE, size);
+    status s = cli_int("--size", text, MERLIN_LEAST_SIZE, MERLIN_LARGEST_SIZE, &size);
+    if (s == OK && size % MERLIN_SIZE_STEP != 0)
+        s = fail(MERLIN_WRONG_USE, "--size must be a multiple of %d, not %ld", MERLIN_SIZE_STEP, size);
     if (s == OK) params->size = (int)size;
     return s;
 }

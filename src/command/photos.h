@@ -48,6 +48,9 @@ status photo_find_model(const char *asked, char **path);
  * are malloc'ed. */
 status photo_find_models(const char *asked, char **path, char **flash);
 
+/* Opens what photo_find_models found; flash may be NULL. */
+status photo_open_models(const char *path, const char *flash, merlin_model **out);
+
 /* The values of --size, and of --exposure ("auto" or EV), for a row of command/options.h; into is a merlin_params. */
 status photo_take_size(const char *text, void *into);
 /* "K/N" of --share; into is a photo_share. */

@@ -24,7 +24,6 @@
 #include "command/photo_hint.h"
 #include "command/photos.h"
 #include "command/standard_input.h"
-#include "estimate/photo/model_pair.h"
 #include "estimate/photo/photo_doubts.h"
 #include "estimate/relight/relighter.h"
 
@@ -312,12 +311,13 @@ static status read_lamps(request *r)
 }
 
 /* From a folder of estimate's or stereo's, or by estimating now. */
-static status get_maps(const request *r, merlin_model *model, const watch *shown, merlin_maps *maps)
+static status get_maps(request *r, merlin_model *model, const watch *shown, merlin_maps *maps)
 {
     *maps = (merlin_maps){0};
     if (file_is_folder(r->input))
         return stereo_maps_in(r->input) ? stereo_maps_read(r->input, maps) : merlin_maps_read(r->input, maps);
-    return photo_maps(model, r->input, r->mask, &r->params, shown, maps);
+    r->params.progress = shown->tell, r->params.progress_context = shown->context;
+    return photo_maps(model, r->input, r->mask, &r->params, maps);
 }
 
 /* ---- what is said of it ---- */
@@ -433,7 +433,7 @@ static void plan(const request *r, stage_bar *bar)
     stage_bar_plan(bar, stages, expect_relit(&how, stages, count));
 }
 
-static status relight(const request *r, const char *output)
+static status relight(request *r, const char *output)
 {
     double began = clock_seconds();
     relight_result result = {0};
@@ -450,7 +450,7 @@ static status relight(const request *r, const char *output)
     watch_tell(&shown, "reading", 0);
     if (r->env) s = merlin_environment_read(r->env, r->rotate, r->env_exposure, &environment);
     job.environment = environment;
-    if (s == OK) s = model_open_pair(r->weights, r->flash, &job.model);
+    if (s == OK) s = photo_open_models(r->weights, r->flash, &job.model);
     if (s == OK) s = get_maps(r, job.model, &shown, &maps);
     job.maps = &maps;
     if (s == OK) s = to_standard_output(r) ? relight_print(&job, &result) : relight_output(&job, &result);

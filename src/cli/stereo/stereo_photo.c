@@ -7,7 +7,6 @@
 #include "base/file.h"
 #include "base/json/json_put.h"
 #include "command/photo_ahead.h"
-#include "estimate/photo/model_pair.h"
 #include "estimate/photo/photo_doubts.h"
 #include "photo_stereo/draws.h"
 #include "photo_stereo/relit.h"
@@ -30,11 +29,11 @@ typedef struct work {
 static status open_photo(work *w)
 {
     const stereo_photo *p = w->photo;
-    status s = model_open_pair(p->weights, p->flash, &w->model);
+    status s = photo_open_models(p->weights, p->flash, &w->model);
     if (s == OK && file_is_folder(p->photo))
         s = merlin_maps_read(p->photo, &w->maps);
     else if (s == OK)
-        s = photo_maps(w->model, p->photo, p->mask, &p->params, NULL, &w->maps);
+        s = photo_maps(w->model, p->photo, p->mask, &p->params, &w->maps);
     if (s != OK) return s;
     int side = w->maps.crop.side < LARGEST_SIDE ? w->maps.crop.side : LARGEST_SIDE;
     return relit_new(w->model, &w->maps, side, p->params.stop, &w->relit);

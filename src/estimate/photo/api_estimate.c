@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/api_needs.h"
+#include "estimate/photo/params.h"
 
 void merlin_maps_free(merlin_maps *maps)
 {
@@ -60,9 +61,14 @@ network *model_network(const merlin_model *model, const merlin_maps *maps, merli
     return strcmp(maps->model, network_config(model->network)->name) == 0 ? model->network : model->flash;
 }
 
-status model_prepare(merlin_model *model, const merlin_params *params)
+merlin_status merlin_model_prepare(merlin_model *model, const merlin_params *params)
 {
+    const merlin_params usual = merlin_params_default();
+    status s = api_needs(__func__, model);
+    if (!params) params = &usual;
     const int size = network_side(params->size);
+    if (s == OK) s = params_check(params);
+    if (s != OK) return s;
     if (!model->flash) return network_prepare(model->network, size, params->views);
     return params->flash ? network_prepare(model->flash, size, params->views)
                          : network_prepare_lights(model->network, size);
@@ -87,9 +93,4 @@ void merlin_model_close(merlin_model *model)
 const char *merlin_model_name(const merlin_model *model)
 {
     return model ? network_config(model->network)->name : "";
-}
-
-merlin_params merlin_params_default(void)
-{
-    return (merlin_params){.size = NETWORK_LARGEST_SIZE, .views = NETWORK_VIEWS, .auto_exposure = 1};
 }

@@ -7,20 +7,20 @@
 
 #include "base/number.h"
 #include "base/progress.h"
+#include "base/watch.h"
 #include "estimate/light/found_light.h"
 #include "estimate/light/relight_env.h"
 #include "estimate/photo/detail.h"
+#include "estimate/photo/estimate.h"
 #include "estimate/photo/input.h"
 #include "estimate/photo/light_choice.h"
 #include "estimate/photo/mean_bounces.h"
 #include "estimate/photo/model_pair.h"
+#include "estimate/photo/params.h"
 #include "estimate/photo/photo_doubts.h"
-#include "estimate/photo/photo_object.h"
 #include "estimate/surface/exposure.h"
 #include "image/coverage.h"
 #include "image/read/read.h"
-
-enum { LEAST_SIDE = 16 };
 
 /* One run's intermediate images: `crop` at the photograph's resolution, `low` at the network's; the maps of `low` may
  * have become larger (detail.h). */
@@ -36,9 +36,7 @@ typedef struct work {
     surface full;
     img reconstruction;
     light_cues cues;
-    merlin_shot shot;
-    const watch *watch;
-    bool last;    /* as of photo_object */
+    watch watch;  /* by the params */
     double clock; /* when the current stage began */
 } work;
 
@@ -61,69 +59,27 @@ static status lap(work *w, double *seconds)
     return OK;
 }
 
-static status check_photo(const img *photo)
+/* The object's mask becomes the run's. */
+static status take_object(work *w, merlin_object *object, merlin_maps *maps)
 {
-    if (!photo->data) return fail(MERLIN_WRONG_USE, "the photograph has no pixels");
-    if (photo->channels != 3) return fail(MERLIN_WRONG_USE, "a photograph has 3 channels, not %d", photo->channels);
-    if (photo->width < LEAST_SIDE || photo->height < LEAST_SIDE)
-        return fail(MERLIN_BAD_INPUT, "the photograph is %d×%d pixels; at least %d×%d are needed", photo->width,
-                    photo->height, LEAST_SIDE, LEAST_SIDE);
-    if ((size_t)photo->width * (size_t)photo->height > IMAGE_MOST_PIXELS)
-        return fail(MERLIN_BAD_INPUT, "the photograph has %d×%d pixels, more than 64 million; make it smaller first",
-                    photo->width, photo->height);
-    size_t count = 3 * (size_t)photo->width * (size_t)photo->height;
-    for (size_t i = 0; i < count; i++)
-        if (!isfinite(photo->data[i])) return fail(MERLIN_BAD_INPUT, "the photograph has values that are not finite");
+    w->mask = object->mask;
+    object->mask = (img){0};
+    if (!w->photo.data || w->photo.channels != 3 || !w->mask.data || w->mask.channels != 1 ||
+        w->mask.width != w->photo.width || w->mask.height != w->photo.height)
+        return fail(MERLIN_WRONG_USE, "this object was not found in this photograph");
+    maps->mask_source = object->source;
+    maps->mask_confidence = object->confidence;
+    maps->timing.mask = object->seconds;
     return OK;
 }
 
-static status check_params(const merlin_params *p)
+static status find_crop(work *w, merlin_maps *maps)
 {
-    if (p->size < NETWORK_LEAST_SIZE || p->size > NETWORK_LARGEST_SIZE || p->size % MODEL_SIZE_MULTIPLE != 0)
-        return fail(MERLIN_WRONG_USE, "the network's size must be a multiple of %d from %d to %d, not %d",
-                    MODEL_SIZE_MULTIPLE, NETWORK_LEAST_SIZE, NETWORK_LARGEST_SIZE, p->size);
-    if (p->fov != 0 && !(p->fov >= 1 && p->fov <= 150))
-        return fail(MERLIN_WRONG_USE, "a field of view must be from 1 to 150 degrees, not %g", (double)p->fov);
-    if (p->auto_exposure || fabsf(p->exposure) <= EXPOSURE_MOST_EV) return OK;
-    return fail(MERLIN_WRONG_USE, "an exposure must be within %g EV, not %g", (double)EXPOSURE_MOST_EV,
-                (double)p->exposure);
-}
-
-status photo_object_choose(const merlin_image *photo, const merlin_image *given, const merlin_hint *hint,
-                           photo_object *out)
-{
-    double began = clock_seconds();
-    img picture = *photo, mask = {0};
-    *out = (photo_object){0};
-    if (given) mask = *given;
-    status s = check_photo(&picture);
-    if (s == OK) s = mask_choose(&picture, &mask, hint, &out->mask, &out->choice);
-    if (s == OK) s = crop_around(&out->mask, &out->crop);
-    if (s != OK) photo_object_free(out);
-    out->seconds = clock_seconds() - began;
-    return s;
-}
-
-void photo_object_free(photo_object *object)
-{
-    img_free(&object->mask);
-}
-
-/* The object's mask becomes the run's. */
-static void take_object(work *w, photo_object *object, merlin_maps *maps)
-{
-    w->mask = object->mask;
-    w->crop = object->crop;
-    w->shot = object->shot;
-    w->watch = object->watch;
-    w->last = object->last;
-    object->mask = (img){0};
-    maps->mask_source = object->choice.found ? MERLIN_MASK_FOUND : MERLIN_MASK_GIVEN;
-    maps->mask_confidence = object->choice.confidence;
+    status s = crop_around(&w->mask, &w->crop);
     maps->crop.x = w->crop.x;
     maps->crop.y = w->crop.y;
     maps->crop.side = w->crop.side;
-    maps->timing.mask = object->seconds;
+    return s;
 }
 
 /* The object alone. */
@@ -173,7 +129,7 @@ static status check_seen(const img *photo, const img *mask)
 /* By what the caller says of the photograph, else by its EXIF. */
 static void find_lens(work *w, merlin_maps *maps)
 {
-    w->how = sight_of(w->params->fov, w->shot.focal_35mm, w->photo.width, w->photo.height, w->crop);
+    w->how = sight_of(w->params->fov, w->params->shot.focal_35mm, w->photo.width, w->photo.height, w->crop);
     w->how.flash = w->params->flash != 0;
     maps->fov = w->how.lens.fov;
     maps->slant[0] = w->how.lens.slant.right;
@@ -281,7 +237,7 @@ static status place_all(work *w, merlin_maps *maps)
 }
 
 /* By the maps of the network's size, before normals of a larger one replace theirs. photo: its size in pixels. */
-static status judge_light(work *w, const merlin_image *photo, float gain)
+static status find_cues(work *w, const merlin_image *photo, float gain)
 {
     const crop_square c = w->crop;
     float scale = (float)w->low_photo.width / (float)c.side;
@@ -308,7 +264,7 @@ static status lap_compile(const merlin_model *model, work *w, double *seconds)
 static status prepare(const merlin_model *model, network *n, work *w, merlin_maps *maps)
 {
     const int views = w->params->views;
-    status s = views > 1 && !w->last ? network_prepare_bounces(n, maps->size) : OK;
+    status s = views > 1 && !w->params->last ? network_prepare_bounces(n, maps->size) : OK;
     if (s == OK) s = network_prepare(n, maps->size, views);
     return s == OK ? lap_compile(model, w, &maps->timing.compile) : s;
 }
@@ -316,7 +272,7 @@ static status prepare(const merlin_model *model, network *n, work *w, merlin_map
 /* Makes the network of bounces ready; that of maps makes room if nothing wants it any more. */
 static status prepare_bounces(const merlin_model *model, network *n, work *w, merlin_maps *maps)
 {
-    if (w->last) network_release_maps(n);
+    if (w->params->last) network_release_maps(n);
     status s = w->params->views > 1 ? network_prepare_bounces(n, maps->size) : OK;
     return s == OK ? lap_compile(model, w, &maps->timing.compile) : s;
 }
@@ -324,7 +280,7 @@ static status prepare_bounces(const merlin_model *model, network *n, work *w, me
 /* Makes the network of the finer normals ready; the one before makes room if nothing wants it any more. */
 static status prepare_finer(const merlin_model *model, network *n, work *w, int finer, merlin_maps *maps)
 {
-    if (w->last) network_release_maps(n);
+    if (w->params->last) network_release_maps(n);
     status s = finer > 0 ? network_prepare_normals(n, finer) : OK;
     return s == OK ? lap_compile(model, w, &maps->timing.compile) : s;
 }
@@ -334,78 +290,90 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     network *n = NULL;
     merlin_timing *t = &maps->timing;
     w->clock = clock_seconds();
-    watch_tell(w->watch, "estimating", 0);
+    watch_tell(&w->watch, "estimating", 0);
     const int views = w->params->views, finer = detail_side(w->params->size, w->crop.side);
     status s = make_input(w, maps);
     if (s == OK) s = lap(w, &t->prepare);
-    const light_question asked = {&w->low_photo, &w->low_mask, &w->how, w->shot.flash};
+    const light_question asked = {&w->low_photo, &w->low_mask, &w->how, w->params->shot.flash};
     if (s == OK) s = light_choice(model->network, model->flash, &asked, &n);
     if (s != OK) return s;
     snprintf(maps->model, sizeof maps->model, "%s", network_config(n)->name);
     s = lap(w, &t->choose);
     if (s == OK) s = lap_compile(model, w, &t->compile);
-    if (w->last) model_keep(model, n);
+    if (w->params->last) model_keep(model, n);
     if (s == OK) s = prepare(model, n, w, maps);
     if (s == OK) s = network_estimate(n, &w->low_photo, &w->low_mask, &w->how, views, w->params->stop, &w->low);
     if (s == OK) s = lap(w, &t->network);
     if (s == OK) s = prepare_bounces(model, n, w, maps);
     maps->has_environment = network_config(n)->lighting == MODEL_LIGHT_BOTH;
     if (s == OK) s = follow_mean(n, w);
-    if (s == OK) s = judge_light(w, &maps->photo, maps->gain);
+    if (s == OK) s = find_cues(w, &maps->photo, maps->gain);
     if (s == OK) s = lap(w, &t->network);
     if (s == OK) s = prepare_finer(model, n, w, finer, maps);
     if (s == OK) s = add_detail(n, w, finer, maps->gain);
-    if (w->last) network_release_maps(n);
+    if (w->params->last) network_release_maps(n);
     if (s == OK) s = lap(w, &t->network);
-    watch_tell(w->watch, "refining", 0);
+    watch_tell(&w->watch, "refining", 0);
     memcpy(maps->environment, w->low.environment, sizeof maps->environment);
     if (network_config(n)->lighting == MODEL_LIGHT_ANY) found_light_take(w->low.lights, &maps->light);
     img photo = maps->photo;
     if (s == OK) maps->burnt_out = exposure_burnt_out(&w->crop_photo, &w->crop_mask);
     if (s == OK) s = refine(w, &maps->light, maps->gain, exposure_white(&photo, maps->gain), maps->has_environment);
-    watch_tell(w->watch, "refining", 0.75);
+    watch_tell(&w->watch, "refining", 0.75);
     if (s == OK) s = place_all(w, maps);
-    if (s == OK) doubts_find(&w->cues, &w->shot, maps);
+    if (s == OK) doubts_find(&w->cues, &w->params->shot, maps);
     if (s == OK) s = lap(w, &t->upsample);
     return s;
 }
 
 /* owned: photo, if it is to be freed; or NULL. */
-static status estimate_photo(merlin_model *model, const merlin_image *photo, merlin_image *owned, photo_object *object,
-                             const merlin_params *params, merlin_maps *maps)
+static status estimate_photo(merlin_model *model, const merlin_image *photo, merlin_image *owned, merlin_object *object,
+                             const merlin_params *params, light_cues *cues, merlin_maps *maps)
 {
     *maps = (merlin_maps){0};
     merlin_params defaults = merlin_params_default();
-    work w = {.params = params ? params : &defaults, .photo = *photo, .owned = owned};
-    maps->size = network_side(w.params->size);
-    take_object(&w, object, maps);
-    find_lens(&w, maps);
-    status s = check_params(w.params);
+    const merlin_params *p = params ? params : &defaults;
+    work w = {.params = p, .photo = *photo, .owned = owned, .watch = {p->progress, p->progress_context, p->stop}};
+    maps->size = network_side(p->size);
+    status s = take_object(&w, object, maps);
+    if (s == OK) s = params_check(p);
+    if (s == OK) s = find_crop(&w, maps);
+    if (s == OK) find_lens(&w, maps);
     if (s == OK) s = estimate(model, &w, maps);
-    object->cues = w.cues;
+    if (cues) *cues = w.cues;
     work_free(&w);
     if (owned) merlin_image_free(owned);
+    merlin_object_free(object);
     if (s != OK) merlin_maps_free(maps);
     return s;
 }
 
-status estimate_object(merlin_model *model, merlin_image *photo, photo_object *object, const merlin_params *params,
-                       merlin_maps *maps)
+status estimate_with_cues(merlin_model *model, merlin_image *photo, merlin_object *object, const merlin_params *params,
+                          light_cues *cues, merlin_maps *maps)
 {
-    return estimate_photo(model, photo, photo, object, params, maps);
+    return estimate_photo(model, photo, photo, object, params, cues, maps);
+}
+
+merlin_status merlin_estimate_object(merlin_model *model, merlin_image *photo, merlin_object *object,
+                                     const merlin_params *params, merlin_maps *maps)
+{
+    if (maps) *maps = (merlin_maps){0};
+    status s = api_needs(__func__, model && photo && object && maps);
+    if (s == OK) return estimate_photo(model, photo, photo, object, params, NULL, maps);
+    merlin_image_free(photo);
+    merlin_object_free(object);
+    return s;
 }
 
 merlin_status merlin_estimate(merlin_model *model, const merlin_image *photo, const merlin_image *mask,
                               const merlin_params *params, merlin_maps *maps)
 {
     if (maps) *maps = (merlin_maps){0};
+    merlin_object object = {.seconds = 0};
     status s = api_needs(__func__, model && photo && maps);
-    if (s != OK) return s;
-    photo_object object;
-    s = photo_object_choose(photo, mask, params ? &params->hint : NULL, &object);
-    if (params) object.shot = params->shot;
+    if (s == OK) s = merlin_object_find(photo, mask, params ? &params->hint : NULL, &object);
     if (s == OK && params && params->stop && params->stop()) s = fail(MERLIN_STOPPED, "stopped");
-    if (s == OK) s = estimate_photo(model, photo, NULL, &object, params, maps);
-    photo_object_free(&object);
+    if (s == OK) s = estimate_photo(model, photo, NULL, &object, params, NULL, maps);
+    merlin_object_free(&object);
     return s;
 }

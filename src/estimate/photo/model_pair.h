@@ -18,9 +18,6 @@ status model_open_pair(const char *weights, const char *flash, merlin_model **ou
  * surfaces where a flash's is all it is given. To relight by the decoder it is one that has it. */
 network *model_network(const merlin_model *model, const merlin_maps *maps, merlin_relighting how);
 
-/* Makes programs for photographs of this size and so many views before one is there: of a pair of networks what tells
- * the light, or where it is known to be a flash, the flash's. */
-status model_prepare(merlin_model *model, const merlin_params *params);
 /* Closes that of its networks which is not `kept`: no photograph follows that would want it. */
 void model_keep(merlin_model *model, network *kept);
 

@@ -80,8 +80,11 @@ static status add_photos(run *r, const photo_list *photos, doubt_kind kind)
     status s = OK;
     for (size_t i = 0; i < photos->count && s == OK; i++) {
         doubt_photo photo = {.name = file_name_of(photos->at[i].photo), .kind = kind};
-        double seconds;
-        status one = photo_read_object(&photos->at[i], &photo.picture, &photo.object, &seconds);
+        photo_taken taken;
+        status one = photo_take(&photos->at[i], &taken);
+        photo.picture = taken.photo;
+        photo.object = taken.object;
+        photo.shot = taken.shot;
         if (one == OK) one = doubt_table_add(&r->table, r->model, &photo);
         if (one == MERLIN_NO_MEMORY) return one;
         if (one != OK) {

@@ -124,7 +124,7 @@ static status take_apart(comparison *c, merlin_model *m, size_t photo, int model
     const photo_job *job = &c->photos->at[photo];
     merlin_maps maps = {0};
     overview o = {0};
-    status s = photo_maps(m, job->photo, job->mask, NULL, NULL, &maps);
+    status s = photo_maps(m, job->photo, job->mask, NULL, &maps);
     if (s == OK) s = overview_new(model_network(m, &maps, MERLIN_BY_BRDF), &maps, &o);
     if (s == OK) s = put_tiles(c, photo, model, &o);
     overview_free(&o);

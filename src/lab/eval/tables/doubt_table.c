@@ -20,15 +20,15 @@ status doubt_table_add(doubt_table *t, merlin_model *model, doubt_photo *photo)
     merlin_params params = merlin_params_default();
     merlin_maps maps = {0};
     params.size = NETWORK_SIZE; /* finer normals change no doubt */
-    status s = estimate_object(model, &photo->picture, &photo->object, &params, &maps);
-    photo_object_free(&photo->object);
+    params.shot = photo->shot;
+    light_cues cues;
+    status s = estimate_with_cues(model, &photo->picture, &photo->object, &params, &cues, &maps);
     if (s != OK) return fail_in(s, "%s", photo->name);
     doubt_row *larger = realloc(t->row, (t->count + 1) * sizeof *larger);
     if (larger) {
         t->row = larger;
         doubt_row *row = &larger[t->count++];
-        *row = (doubt_row){
-            .kind = photo->kind, .cues = photo->object.cues, .elsewhere = maps.light_elsewhere, .doubts = maps.doubts};
+        *row = (doubt_row){.kind = photo->kind, .cues = cues, .elsewhere = maps.light_elsewhere, .doubts = maps.doubts};
         snprintf(row->name, sizeof row->name, "%s", photo->name);
     }
     merlin_maps_free(&maps);
@@ -93,7 +93,7 @@ static status add_picture(doubt_table *t, merlin_model *model, const sample *s, 
     if (st != OK) return st;
     doubt_photo photo = {.name = name, .kind = kind, .picture = taken.picture};
     const merlin_image mask = taken.mask;
-    st = photo_object_choose(&photo.picture, &mask, NULL, &photo.object);
+    st = merlin_object_find(&photo.picture, &mask, NULL, &photo.object);
     if (st == OK) {
         taken.picture = (img){0};
         st = doubt_table_add(t, model, &photo);

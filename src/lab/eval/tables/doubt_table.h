@@ -13,7 +13,7 @@
 
 #include <stdio.h>
 
-#include "estimate/photo/photo_object.h"
+#include "estimate/photo/estimate.h"
 
 typedef enum doubt_kind {
     DOUBT_RIGHT_PHOTO, /* taken by a flash at the lens */
@@ -44,7 +44,8 @@ typedef struct doubt_photo {
     const char *name;
     doubt_kind kind;
     merlin_image picture;
-    photo_object object;
+    merlin_object object;
+    merlin_shot shot;
 } doubt_photo;
 
 status doubt_table_add(doubt_table *t, merlin_model *model, doubt_photo *photo);
