@@ -35,6 +35,7 @@
 #include <merlin/calibrate.h>
 #include <merlin/camera.h>
 #include <merlin/estimate.h>
+#include <merlin/files.h>
 #include <merlin/image.h>
 #include <merlin/maps.h>
 #include <merlin/model.h>
