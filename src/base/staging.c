@@ -217,20 +217,9 @@ status staging_commit(staging *t, staged_files *written)
     return staging_commit_all(&t, 1, written);
 }
 
-/* Names the folder in the message instead of the hidden one, which no longer exists. */
-static status name_folder(const staging *t, status s)
-{
-    char message[1024];
-    snprintf(message, sizeof message, "%s", status_message());
-    char *at = strstr(message, t->hidden);
-    if (!at) return s;
-    *at = 0;
-    return fail(s, "%s%s%s", message, t->folder, at + strlen(t->hidden));
-}
-
 status staging_abort(staging *t, status s)
 {
-    s = name_folder(t, s);
+    s = fail_shown(s, t->hidden, t->folder);
     leftovers_remove_folder(t->hidden);
     remove_made(t);
     staging_free(t);

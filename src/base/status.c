@@ -10,6 +10,7 @@
 #undef fail
 #undef fail_in
 #undef fail_by_errno
+#undef fail_shown
 
 enum { MESSAGE_SIZE = 1024 };
 
@@ -45,6 +46,16 @@ status fail_in(status s, const char *format, ...)
     if (used >= 0 && room > 0) snprintf(message + used, (size_t)(MESSAGE_SIZE - used), ": %.*s", room, inner);
     keep_one_line();
     return s;
+}
+
+status fail_shown(status s, const char *hidden, const char *shown)
+{
+    char inner[MESSAGE_SIZE];
+    memcpy(inner, message, sizeof inner);
+    char *at = strstr(inner, hidden);
+    if (!at) return s;
+    *at = 0;
+    return fail(s, "%s%s%s", inner, shown, at + strlen(hidden));
 }
 
 status status_by_errno(status s)

@@ -28,6 +28,9 @@ status fail(status s, const char *format, ...) __attribute__((format(printf, 2, 
 /* Puts context in front of the recorded message ("context: message") and returns s. */
 status fail_in(status s, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+/* Puts a shown name in the place of a hidden one in the recorded message and returns s. */
+status fail_shown(status s, const char *hidden, const char *shown);
+
 /* Returns MERLIN_NO_MEMORY if errno says that memory ran out, else s, after a refusal by the C library or by a library
  * that uses it and does not report its reason; errno must have been 0 before. */
 status status_by_errno(status s);
@@ -44,6 +47,7 @@ static inline status status_given(status s, status recorded)
 #define fail(s, ...) status_given(s, fail(s, __VA_ARGS__))
 #define fail_in(s, ...) status_given(s, fail_in(s, __VA_ARGS__))
 #define fail_by_errno(s, ...) status_given(s, fail_by_errno(s, __VA_ARGS__))
+#define fail_shown(s, ...) status_given(s, fail_shown(s, __VA_ARGS__))
 #endif
 
 /* Returns the message of this thread's last failure; "" if there was none. Valid until the thread's next fail. */

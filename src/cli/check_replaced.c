@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "cli/check_replaced.h"
 
+#include <limits.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,6 +10,7 @@
 
 #include "base/file.h"
 #include "base/lights/light_list.h"
+#include "image/metadata/byte_source.h"
 
 static status refuse(const char *folder, const char *name)
 {
@@ -43,19 +45,20 @@ static bool is_among(const char *const *names, const char *name)
 }
 
 /* Tells whether the folder has a file that says where the lights of the pictures beside it were. */
-static bool holds_capture(const char *folder)
+static status find_capture(const char *folder, bool *holds)
 {
     static const char *const data_sets[] = {"light_directions.txt", "led_params.txt", NULL};
     char **names;
     size_t count = 0;
-    bool holds = false;
-    if (file_list(folder, NULL, &names, &count) != OK) return false;
+    status s = file_list(folder, NULL, &names, &count);
+    *holds = false;
+    if (s != OK) return s == MERLIN_NO_MEMORY ? s : OK;
     for (size_t i = 0; i < count; i++) {
         const char *name = file_name_of(names[i]);
-        holds |= is_among(light_list_names, name) || is_among(data_sets, name) || file_ends_in(name, ".lp");
+        *holds |= is_among(light_list_names, name) || is_among(data_sets, name) || file_ends_in(name, ".lp");
     }
     file_list_free(names, count);
-    return holds;
+    return OK;
 }
 
 status check_replaced(const char *folder, bool meshes)
@@ -69,7 +72,9 @@ status check_replaced(const char *folder, bool meshes)
     const char *name = first_in(folder, maps);
     if (!name && meshes) name = first_in(folder, surface);
     if (name) return refuse(folder, name);
-    if (!holds_capture(folder)) return OK;
+    bool holds;
+    status s = find_capture(folder, &holds);
+    if (s != OK || !holds) return s;
     return fail(MERLIN_CANNOT_WRITE,
                 "cannot write into %s: it holds a capture, whose pictures and mask the results would be taken for the "
                 "next time; choose another folder",
@@ -90,32 +95,34 @@ static bool is_ours(const char *line)
 
 enum { FIRST_LINE = 64 };
 
-/* Reads a file's first letters; false where there is no file, or nothing in it. */
-static bool read_first_line(const char *path, char line[FIRST_LINE])
+/* Reads the first letters of the folder's lights.txt; false where there is no such file, or nothing in it. Asks for no
+ * memory, without which a list of somebody's would be taken for none. */
+static bool read_list(const char *folder, char line[FIRST_LINE])
 {
-    FILE *f = file_is_folder(path) ? NULL : file_open(path);
-    const bool got = f && fgets(line, FIRST_LINE, f);
-    if (f) fclose(f);
-    return got;
+    char path[PATH_MAX];
+    const int length = snprintf(path, sizeof path, "%s/lights.txt", folder);
+    if (length < 0 || (size_t)length >= sizeof path) return false;
+    byte_source file;
+    if (!byte_source_open(&file, path)) return false;
+    const size_t got = byte_source_read(&file, 0, line, FIRST_LINE - 1);
+    byte_source_close(&file);
+    line[got] = 0;
+    return got > 0;
 }
 
 bool list_begins_with(const char *folder, const char *words)
 {
-    char *path = file_join(folder, "lights.txt"), line[FIRST_LINE];
-    const bool begins = path && read_first_line(path, line) && begins_with(line, words);
-    free(path);
-    return begins;
+    char line[FIRST_LINE];
+    return read_list(folder, line) && begins_with(line, words);
 }
 
 status check_list_replaced(const char *folder)
 {
-    char *path = file_join(folder, "lights.txt"), line[FIRST_LINE];
-    if (!path) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
-    status s = OK;
-    if (read_first_line(path, line) && !is_ours(line))
-        s = fail(MERLIN_CANNOT_WRITE,
-                 "cannot write %s: it is no earlier result, and would be replaced; rename it, or choose another folder",
-                 path);
-    free(path);
-    return s;
+    char line[FIRST_LINE];
+    if (!read_list(folder, line) || is_ours(line)) return OK;
+    return fail(
+        MERLIN_CANNOT_WRITE,
+        "cannot write %s%slights.txt: it is no earlier result, and would be replaced; rename it, or choose another "
+        "folder",
+        folder, file_ends_in(folder, "/") ? "" : "/");
 }

@@ -118,7 +118,8 @@ static status write_page(const request *r, const merlin_maps *maps, bool capture
 
 static status read_maps(const request *r, bool *captured, merlin_maps *maps)
 {
-    *captured = stereo_maps_in(r->input);
+    status s = stereo_maps_look(r->input, captured);
+    if (s != OK) return s;
     return *captured ? stereo_maps_read(r->input, maps) : merlin_maps_read(r->input, maps);
 }
 

@@ -117,7 +117,8 @@ typedef struct request {
     img_file_kind format;
     int orbit, frame;
     relight_dome dome;
-    bool found, near, no_shadows, no_bounces, matte, json, quiet, help;
+    bool found, near, no_shadows, no_bounces, matte, json, quiet, help,
+        captured; /* the last: input is a capture's maps */
 } request;
 
 static status take_exposing(const char *text, void *into)
@@ -206,11 +207,11 @@ static status check_way(request *r)
         return fail(MERLIN_WRONG_USE, "--matte is of --by brdf; the relighting decoder paints gloss");
     if (r->found && by_network)
         return fail(MERLIN_WRONG_USE, "--found-light is of --by brdf; the relighting decoder knows one lamp alone");
-    if (by_network && stereo_maps_in(r->input))
+    status s = stereo_maps_look(r->input, &r->captured);
+    if (by_network && r->captured)
         return fail(MERLIN_WRONG_USE, "--by network wants a photograph; %s holds the maps of merlin stereo", r->input);
-    if (r->no_shadows) r->how = MERLIN_BY_BRDF_UNSHADOWED;
-    if (r->no_bounces) r->how = MERLIN_BY_BRDF_DIRECT;
-    return OK;
+    if (r->no_shadows || r->no_bounces) r->how = r->no_shadows ? MERLIN_BY_BRDF_UNSHADOWED : MERLIN_BY_BRDF_DIRECT;
+    return s;
 }
 
 static status check_photo(const request *r)
@@ -315,7 +316,7 @@ static status get_maps(request *r, merlin_model *model, const watch *shown, merl
 {
     *maps = (merlin_maps){0};
     if (file_is_folder(r->input))
-        return stereo_maps_in(r->input) ? stereo_maps_read(r->input, maps) : merlin_maps_read(r->input, maps);
+        return r->captured ? stereo_maps_read(r->input, maps) : merlin_maps_read(r->input, maps);
     r->params.progress = shown->tell, r->params.progress_context = shown->context;
     return photo_maps(model, r->input, r->mask, &r->params, maps);
 }
@@ -399,11 +400,10 @@ static status announce(const request *r, const relight_job *job, const relight_r
 
 static relight_job job_of(const request *r, const char *output)
 {
-    bool captured = stereo_maps_in(r->input);
     relight_job job = {.output = output,
                        .lamps = r->lamps,
                        .how = r->how,
-                       .matte = r->matte || captured,
+                       .matte = r->matte || r->captured,
                        .format = r->format,
                        .ev = r->exposing.ev,
                        .dome = r->dome,
@@ -414,7 +414,7 @@ static relight_job job_of(const request *r, const char *output)
                        .stop = cli_interrupted};
     if (r->exposing.automatic || (!r->exposing.given && r->dome.count))
         job.exposing = RELIGHT_AUTO;
-    else if (!r->exposing.given && captured)
+    else if (!r->exposing.given && r->captured)
         job.exposing = RELIGHT_BY_LAMPS;
     return job;
 }

@@ -70,15 +70,17 @@ static void print_places(FILE *f, const void *context)
 /* ---- an earlier dome in the same folder ---- */
 
 /* An earlier dome's list, whose lights these pictures of the same names would be believed to have. */
-static bool has_directions(const char *folder)
+static status look_for_directions(const char *folder, bool *has)
 {
     char *path = file_join(folder, "dome.lp");
     light_list list = {0};
-    bool has = path && file_exists(path) && light_list_read(path, &list) == OK && list.name &&
-               strncmp(list.name[0], "dome_000.", 9) == 0;
+    status s = !path               ? fail(MERLIN_NO_MEMORY, "no memory for a file name")
+               : file_exists(path) ? light_list_read(path, &list)
+                                   : OK;
+    *has = s == OK && list.name && strncmp(list.name[0], "dome_000.", 9) == 0;
     light_list_free(&list);
     free(path);
-    return has;
+    return s == MERLIN_NO_MEMORY ? s : OK;
 }
 
 /* A picture of a dome, that this one does not replace. */
@@ -107,7 +109,9 @@ status relight_dome_check(const relight_job *job)
     for (size_t i = 0; i < count && s == OK; i++)
         if (is_left_over(job, file_name_of(names[i]))) s = refuse(job, file_name_of(names[i]));
     file_list_free(names, count);
-    if (s == OK && job->dome.near > 0 && has_directions(job->output)) s = refuse(job, "dome.lp");
+    bool has = false;
+    if (s == OK && job->dome.near > 0) s = look_for_directions(job->output, &has);
+    if (s == OK && has) s = refuse(job, "dome.lp");
     if (s == OK && job->dome.near > 0) s = check_list_replaced(job->output);
     if (s == OK && job->dome.near == 0 && list_begins_with(job->output, LIST_OF_PLACES)) s = refuse(job, "lights.txt");
     return s;
@@ -120,7 +124,9 @@ static status write_lists(const relight_work *w)
     const relight_job *job = w->job;
     char path[PATH_MAX];
     if (job->dome.near > 0) return file_print(staging_path(w->staging, "lights.txt", path), print_places, job);
-    if (!job->dome.lp && !has_directions(job->output)) return OK;
+    bool has = job->dome.lp;
+    status s = has ? OK : look_for_directions(job->output, &has);
+    if (s != OK || !has) return s;
     return file_print(staging_path(w->staging, "dome.lp", path), print_lp, job);
 }
 

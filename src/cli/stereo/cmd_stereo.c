@@ -110,14 +110,17 @@ static status take_integration(const char *name, void *into)
 }
 
 /* Without lights beside them: relight --dome may have written its pictures there too. */
-static bool holds_maps(const char *folder)
+static status look_for_maps(const char *folder, bool *alone)
 {
     static const char *const lights[] = {".txt", ".lp", NULL};
     char **names = NULL;
     size_t count = 0;
-    bool alone = file_is_in(folder, "maps.exr") && file_list(folder, lights, &names, &count) == OK && count == 0;
+    *alone = file_is_in(folder, "maps.exr");
+    if (!*alone) return OK;
+    status s = file_list(folder, lights, &names, &count);
+    *alone = s == OK && count == 0;
     file_list_free(names, count);
-    return alone;
+    return s == MERLIN_NO_MEMORY ? s : OK;
 }
 
 static bool is_capture(const request *r)
@@ -132,7 +135,8 @@ static status check(request *r)
     if ((o->lights || o->near_lights) && o->unknown_lights)
         return fail(MERLIN_WRONG_USE,
                     "--method uncalibrated takes no --lights and no --near: it finds both kinds of lights");
-    r->maps = !o->lights && holds_maps(r->input);
+    status s = o->lights ? OK : look_for_maps(r->input, &r->maps);
+    if (s != OK) return s;
     bool is_one_photo = file_exists(r->input) && !is_capture(r);
     if (is_one_photo &&
         (o->lights || o->near_lights || o->field_of_view > 0 || o->distance > 0 || o->ambient || o->linear))

@@ -21,14 +21,15 @@ static const float WHITE = LIGHT_POWER / PI;
 /* Of depth, as estimates have it; nearer than this a surface would reach the camera. */
 static const float nearest = 0.25f, farthest = 20;
 
-bool stereo_maps_in(const char *folder)
+status stereo_maps_look(const char *folder, bool *theirs)
 {
     char *path = file_join(folder, "maps.exr");
     exr_file *f = NULL;
-    bool theirs = path && exr_open(path, &f) == OK && exr_get_text(f, "merlinError");
-    if (f) exr_close(f);
+    status s = path ? exr_open(path, &f) : fail(MERLIN_NO_MEMORY, "no memory for a file name");
+    *theirs = s == OK && exr_get_text(f, "merlinError");
+    exr_close(f);
     free(path);
-    return theirs;
+    return s == MERLIN_NO_MEMORY ? s : OK;
 }
 
 /* No lens is so wide that its focal length is less than a hundredth of the picture. */

@@ -86,11 +86,11 @@ static bool has_photo(const img_folder *f, const img_folder_file *mask)
     return false;
 }
 
-static bool is_mask(const img_folder *f, const img_folder_file *file)
+static status look_for_mask(const img_folder *f, img_folder_file *file)
 {
-    if (!file->is_picture || !mask_name_has_word(file->name)) return false;
-    if (mask_name_is_whole(file->name) || mask_name_is_sure(file->name) || has_photo(f, file)) return true;
-    return mask_name_is_likely(file->name) && mask_is_two_valued(file->path);
+    if (!file->is_picture || !mask_name_has_word(file->name)) return OK;
+    file->is_mask = mask_name_is_whole(file->name) || mask_name_is_sure(file->name) || has_photo(f, file);
+    return file->is_mask || !mask_name_is_likely(file->name) ? OK : mask_look(file->path, &file->is_mask);
 }
 
 status img_folder_read(const char *folder, img_folder *out)
@@ -111,9 +111,10 @@ status img_folder_read(const char *folder, img_folder *out)
         else
             out->at[out->count++] = look_at(names[i]);
     free(names);
-    for (size_t i = 0; i < out->count; i++)
-        out->at[i].is_mask = is_mask(out, &out->at[i]);
-    return OK;
+    for (size_t i = 0; s == OK && i < out->count; i++)
+        s = look_for_mask(out, &out->at[i]);
+    if (s != OK) img_folder_free(out);
+    return s;
 }
 
 void img_folder_free(img_folder *f)

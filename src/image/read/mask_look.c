@@ -13,10 +13,12 @@ static const float NEAR = 0.1f;
  * more. */
 static const double MOST_BETWEEN = 0.25;
 
-bool mask_is_two_valued(const char *path)
+status mask_look(const char *path, bool *is_two_valued)
 {
     img grey;
-    if (img_read_grey(path, &grey) != OK) return false;
+    status s = img_read_grey(path, &grey);
+    *is_two_valued = false;
+    if (s != OK) return s == MERLIN_NO_MEMORY ? s : OK;
     size_t count = img_value_count(&grey), low = 0, high = 0;
     float least = grey.data[0], most = grey.data[0];
     for (size_t i = 0; i < count; i++) {
@@ -28,6 +30,6 @@ bool mask_is_two_valued(const char *path)
         high += most - grey.data[i] <= NEAR * (most - least);
     }
     img_free(&grey);
-    if (!(most > least)) return false;
-    return (double)(count - low - high) <= MOST_BETWEEN * (double)(low < high ? low : high);
+    *is_two_valued = most > least && (double)(count - low - high) <= MOST_BETWEEN * (double)(low < high ? low : high);
+    return OK;
 }

@@ -5,7 +5,10 @@
 
 #include <stdbool.h>
 
-/* Tells whether a picture has two values and little between them; false if it cannot be read. */
-bool mask_is_two_valued(const char *path);
+#include "base/status.h"
+
+/* Finds whether a picture has two values and little between them; false if it cannot be read. Fails with
+ * MERLIN_NO_MEMORY only. */
+status mask_look(const char *path, bool *is_two_valued);
 
 #endif

@@ -91,14 +91,36 @@ static status write_material(const char *path, const char *texture)
     return s;
 }
 
-/* Writes the files that the OBJ refers to before the OBJ. */
+/* The OBJ and the files that it refers to. */
+enum { TEXTURE, MATERIAL, MESH, FILES };
+
+/* Writes all files under temporary names, those that the OBJ refers to first. */
+static status write_aside(const char *const path[FILES], char *aside[FILES], const surface_mesh *m,
+                          const mesh_source *from)
+{
+    status s = OK;
+    for (int i = from->albedo ? TEXTURE : MATERIAL; s == OK && i < FILES; i++)
+        s = file_temporary(path[i], &aside[i]);
+    if (s == OK && from->albedo) s = write_texture(aside[TEXTURE], from->albedo);
+    if (s == OK) s = write_material(aside[MATERIAL], from->albedo ? path[TEXTURE] : NULL);
+    return s == OK ? file_print(aside[MESH], print_mesh, &(obj){m, from, path[MATERIAL]}) : s;
+}
+
 status mesh_write_obj(const char *path, const surface_mesh *m, const mesh_source *from)
 {
-    char *material = with_ending(path, ".mtl"), *texture = with_ending(path, ".png");
-    status s = material && texture ? OK : fail(MERLIN_NO_MEMORY, "no memory for file names");
-    if (s == OK && from->albedo) s = write_texture(texture, from->albedo);
-    if (s == OK) s = write_material(material, from->albedo ? texture : NULL);
-    if (s == OK) s = file_print(path, print_mesh, &(obj){m, from, material});
+    char *material = with_ending(path, ".mtl"), *texture = with_ending(path, ".png"), *aside[FILES] = {NULL};
+    const char *const paths[FILES] = {texture, material, path};
+    status s =
+        material && texture ? write_aside(paths, aside, m, from) : fail(MERLIN_NO_MEMORY, "no memory for file names");
+    for (int i = 0; i < FILES; i++) {
+        if (!aside[i]) continue;
+        if (s == OK) {
+            s = file_commit(aside[i], paths[i]);
+        } else {
+            s = fail_shown(s, aside[i], paths[i]);
+            file_discard(aside[i]);
+        }
+    }
     free(material);
     free(texture);
     return s;

@@ -107,7 +107,9 @@ static status straighten(pst_pseudo *f, lights3 *l)
     status s = unit_quadric_fit(light, (size_t)l->count, &strength);
     free(light);
     if (s != OK) return s;
-    double albedos = unit_quadric_fit(f->b, n, &albedo) == OK ? albedo.spread : HUGE_VAL;
+    s = unit_quadric_fit(f->b, n, &albedo);
+    if (s == MERLIN_NO_MEMORY) return s;
+    double albedos = s == OK ? albedo.spread : HUGE_VAL;
     bool by_albedo = strength.spread > fmin(uneven, plainly * albedos);
     if (by_albedo && albedos > strength.spread)
         return fail(MERLIN_BAD_INPUT,
