@@ -14,10 +14,10 @@
  *         fprintf(stderr, "%s\n", merlin_error());
  *
  * Each header is a subject: status.h (errors, progress, threads), image.h (pictures), camera.h (lenses), warnings.h
- * (what should be known of a result), files.h (what was written or left aside), model.h (weights), maps.h (what an
- * object is made of), estimate.h (from a photograph to maps), relight.h (from maps to new light), stereo.h (from
- * pictures under many lights to a surface), calibrate.h (where lights were), view.h (maps as a page). This one includes
- * them all, and says what holds for all.
+ * (what should be known of a result), files.h (what was written or left aside), weights.h (what is in a weights
+ * file), model.h (weights to work with), maps.h (what an object is made of), estimate.h (from a photograph to maps),
+ * relight.h (from maps to new light), stereo.h (from pictures under many lights to a surface), calibrate.h (where
+ * lights were), view.h (maps as a page). This one includes them all, and says what holds for all.
  *
  * Images are float, interleaved, rows from the top, on linear sRGB primaries. Space: the camera is at the origin and
  * looks along -z, x right, y up; the object stands near (0, 0, -1).
@@ -44,5 +44,6 @@
 #include <merlin/stereo.h>
 #include <merlin/view.h>
 #include <merlin/warnings.h>
+#include <merlin/weights.h>
 
 #endif

@@ -12,8 +12,7 @@
 #include "command/json_line.h"
 #include "command/options.h"
 #include "command/photos.h"
-#include "model/model.h"
-#include "nn/safetensors.h"
+#include "merlin/weights.h"
 
 static const char help[] = "usage: merlin info WEIGHTS [--tensors] [--json] [--quiet]\n\n"
                            "Says what is in a weights file, or in the shipped merlin-point or merlin-env: the model's\n"
@@ -25,49 +24,12 @@ static const char help[] = "usage: merlin info WEIGHTS [--tensors] [--json] [--q
                            "  -q, --quiet      no other output than errors\n"
                            "  -h, --help       this text\n";
 
-enum { COST_SIZE = 256 };
-
-typedef struct weights_info {
-    model_config config;
-    size_t parameters, statistics; /* trained numbers, and batch norm's running statistics */
-    double gmac;                   /* at COST_SIZE */
-    safetensors_file *file;
-} weights_info;
-
 /* Metadata that merlin-lab train writes beside the configuration. */
 static const char *const provenance[] = {"presentations",   "samples", "size",    "generator_version",
                                          "validation_loss", "note",    "training"};
 enum { PROVENANCE = sizeof provenance / sizeof provenance[0] };
 
-static status measure_cost(const model_config *config, nn_params *params, double *gmac)
-{
-    nn_graph *g = NULL;
-    nn_program *p = NULL;
-    nn_options options = {.batch = 1, .height = COST_SIZE, .width = COST_SIZE, .purpose = NN_INFER};
-    status s = model_build(config, MODEL_WHOLE, &g);
-    if (s == OK) s = nn_compile(g, params, &options, &p);
-    if (s == OK) *gmac = nn_program_cost(p).forward_flops / 2e9;
-    nn_program_free(p);
-    nn_graph_free(g);
-    return s;
-}
-
-static status read_info(const char *path, weights_info *out)
-{
-    nn_params *params = NULL;
-    status s = model_load(path, &out->config, &params);
-    if (s != OK) return s;
-    for (size_t i = 0; i < nn_params_count(params); i++) {
-        const nn_param *p = nn_params_at(params, i);
-        *(p->gradient ? &out->parameters : &out->statistics) += p->count;
-    }
-    s = measure_cost(&out->config, params, &out->gmac);
-    if (s == OK) s = safetensors_open(path, &out->file);
-    nn_params_free(params);
-    return s;
-}
-
-static void format_shape(const safetensors_tensor *t, char *out, size_t size)
+static void format_shape(const merlin_tensor *t, char *out, size_t size)
 {
     size_t used = 0;
     out[0] = 0;
@@ -75,22 +37,22 @@ static void format_shape(const safetensors_tensor *t, char *out, size_t size)
         used += (size_t)snprintf(out + used, size - used, i ? "x%lld" : "%lld", (long long)t->shape[i]);
 }
 
-static void print_text(const weights_info *info, bool tensors)
+static void print_text(const merlin_weights *info, bool tensors)
 {
-    printf("model              %s\n", info->config.name);
+    printf("model              %s\n", info->name);
     printf("parameters         %zu (and %zu running statistics)\n", info->parameters, info->statistics);
-    printf("cost at %dx%d    %.2f GMAC\n", COST_SIZE, COST_SIZE, info->gmac);
+    printf("cost at %dx%d    %.2f GMAC\n", MERLIN_COST_SIDE, MERLIN_COST_SIDE, info->gmac);
     for (int i = 0; i < PROVENANCE; i++) {
-        const char *value = safetensors_metadata(info->file, provenance[i]);
+        const char *value = merlin_weights_metadata(info, provenance[i]);
         if (value && *value) printf("%-18s %s\n", provenance[i], value);
     }
-    printf("config             %s\n", safetensors_metadata(info->file, "config"));
-    printf("tensors            %zu\n", safetensors_count(info->file));
-    for (size_t i = 0; tensors && i < safetensors_count(info->file); i++) {
-        const safetensors_tensor *t = safetensors_at(info->file, i);
+    printf("config             %s\n", merlin_weights_metadata(info, "config"));
+    printf("tensors            %zu\n", info->tensor_count);
+    for (size_t i = 0; tensors && i < info->tensor_count; i++) {
+        const merlin_tensor *t = &info->tensors[i];
         char shape[96];
         format_shape(t, shape, sizeof shape);
-        printf("  %-48s %-5s %s\n", t->name, safetensors_type_name(t->type), shape);
+        printf("  %-48s %-5s %s\n", t->name, t->type, shape);
     }
 }
 
@@ -108,33 +70,33 @@ static void add_text(cJSON *o, const char *key, const char *text)
     json_put_text(o, key, text);
 }
 
-static void add_tensors(cJSON *o, const safetensors_file *file)
+static void add_tensors(cJSON *o, const merlin_weights *info)
 {
     cJSON *list = json_put_array(o, "tensors");
-    for (size_t i = 0; i < safetensors_count(file); i++) {
-        const safetensors_tensor *t = safetensors_at(file, i);
+    for (size_t i = 0; i < info->tensor_count; i++) {
+        const merlin_tensor *t = &info->tensors[i];
         cJSON *entry = json_append_object(list);
         json_put_text(entry, "name", t->name);
-        json_put_text(entry, "type", safetensors_type_name(t->type));
+        json_put_text(entry, "type", t->type);
         cJSON *shape = json_put_array(entry, "shape");
         for (int k = 0; k < t->rank; k++)
             json_append(shape, cJSON_CreateNumber((double)t->shape[k]));
     }
 }
 
-static status print_json(const weights_info *info, bool tensors)
+static status print_json(const merlin_weights *info, bool tensors)
 {
     cJSON *o = report_begin(&(warnings){0});
-    json_put_text(o, "model", info->config.name);
+    json_put_text(o, "model", info->name);
     json_put_number(o, "parameters", (double)info->parameters);
     json_put_number(o, "statistics", (double)info->statistics);
     json_put_number(o, "gmac_256", info->gmac);
-    add_text(o, "config", safetensors_metadata(info->file, "config"));
+    add_text(o, "config", merlin_weights_metadata(info, "config"));
     for (int i = 0; i < PROVENANCE; i++) {
-        const char *value = safetensors_metadata(info->file, provenance[i]);
+        const char *value = merlin_weights_metadata(info, provenance[i]);
         if (value) add_text(o, provenance[i], value);
     }
-    if (tensors) add_tensors(o, info->file);
+    if (tensors) add_tensors(o, info);
     char *text = json_print(o);
     cJSON_Delete(o);
     return json_report_print(text);
@@ -153,13 +115,13 @@ int cmd_info(int argc, char **argv)
     if (cli_read_options(&argc, &argv, options) != OK) return cli_usage("info", "%s", status_message());
     if (wants_help) return fputs(help, stdout) < 0;
     if (argc != 1) return cli_usage("info", "one weights file wanted");
-    weights_info info = {0};
+    merlin_weights info = {.file = NULL};
     char *path;
     status s = photo_find_model(argv[0], &path);
-    if (s == OK) s = read_info(path, &info);
+    if (s == OK) s = merlin_weights_read(path, &info);
     free(path);
     if (s == OK && json) s = print_json(&info, tensors);
     if (s == OK && !json && !quiet) print_text(&info, tensors);
-    safetensors_close(info.file);
+    merlin_weights_free(&info);
     return s == OK ? 0 : cli_fail("info", s);
 }

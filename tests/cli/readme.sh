@@ -115,12 +115,13 @@ mv dome owl
 # Every program begins with the headers; where a call goes wrong it says so.
 blocks "$docs/library.md" | awk '/^#include </ && !head { number++ } { head = /^#include </ }
     { print > (("program" number) (head ? ".h" : ".body")) }'
-for number in 1 2 3 4 5; do
+for head in program*.h; do
+    number=${head//[!0-9]/}
     {
         printf '#include <stdio.h>\n'
         cat program$number.h
         printf 'int main(void)\n{\n'
-        sed -E 's/^(merlin_[a-z_]+\(.*\));$/if (\1 != 0) { puts(merlin_error()); return 1; }/' program$number.body
+        sed -E '/_(free|close)\(/!s/^(merlin_[a-z_]+\(.*\));$/if (\1 != 0) { puts(merlin_error()); return 1; }/' program$number.body
         printf 'return 0;\n}\n'
     } >program$number.c
     # shellcheck disable=SC2046

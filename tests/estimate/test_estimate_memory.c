@@ -30,6 +30,7 @@ typedef struct work {
     merlin_maps maps;
     merlin_relighting how;
     merlin_model *opened;
+    merlin_weights weights;
     merlin_maps made;
     merlin_image picture;
     uint64_t first; /* sum of what the first run gave; 0: there was none */
@@ -96,6 +97,25 @@ static const char *check_model(void *context, int result)
     const work *w = context;
     (void)result;
     return w->opened ? "a model" : NULL;
+}
+
+static int read_weights(void *context)
+{
+    work *w = context;
+    memset(&w->weights, 1, sizeof w->weights);
+    return merlin_weights_read(w->point, &w->weights);
+}
+
+static const char *check_weights(void *context, int result)
+{
+    work *w = context;
+    const char *fault = NULL;
+    if (result == MERLIN_OK)
+        fault = is_as_ever(w, w->weights.parameters + w->weights.tensor_count);
+    else if (!is_empty(&w->weights, sizeof w->weights))
+        return "facts of weights";
+    merlin_weights_free(&w->weights);
+    return fault;
 }
 
 /* ---- maps ---- */
@@ -224,6 +244,11 @@ static void lack_of_memory_opens_no_model(void **state)
     each_allocation_fails(&(memory_trial){"model", open_model, check_model, *state});
 }
 
+static void lack_of_memory_reads_no_weights(void **state)
+{
+    each_allocation_fails(&(memory_trial){"weights_read", read_weights, check_weights, *state});
+}
+
 static void lack_of_memory_makes_no_maps(void **state)
 {
     work *w = *state;
@@ -321,6 +346,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(lack_of_memory_opens_no_model, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(lack_of_memory_reads_no_weights, set_up, tear_down),
         cmocka_unit_test_setup_teardown(lack_of_memory_makes_no_maps, set_up, tear_down),
         cmocka_unit_test_setup_teardown(lack_of_memory_writes_no_maps, set_up, tear_down),
         cmocka_unit_test_setup_teardown(lack_of_memory_reads_no_maps, set_up, tear_down),
