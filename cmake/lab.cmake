@@ -12,8 +12,9 @@ target_compile_definitions(merlin_render PRIVATE MERLIN_EMBREE=${embree_VERSION_
 merlin_module(lab/train LINK merlin_model merlin_render)
 merlin_module(lab/eval PARTS metrics samples tables stereo
   LINK merlin_train merlin_photo_stereo)
+merlin_module(lab/onnx LINK merlin_model)
 merlin_module(lab/bench LINK merlin_eval)
-merlin_program(merlin-lab lab/cli LINK merlin_command merlin_bench)
+merlin_program(merlin-lab lab/cli LINK merlin_command merlin_bench merlin_onnx)
 add_dependencies(merlin-lab merlin) # which its bench runs
 
 # merlin-lab train --mpi, where there is an MPI.

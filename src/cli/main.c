@@ -13,7 +13,7 @@ static const cli_command commands[] = {
 
 int main(int argc, char **argv)
 {
-    static const char *const of_the_lab[] = {"render", "train", "eval", "bench", NULL};
+    static const char *const of_the_lab[] = {"render", "train", "eval", "export", "bench", NULL};
     static const program merlin = {
         .name = "merlin",
         .about = "One photograph of an object, taken apart into its material and lit again from elsewhere.",

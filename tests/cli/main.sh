@@ -38,7 +38,7 @@ refuses 2 "unknown option --exposre=1: did you mean --exposure? (try" "$MERLIN" 
 refuses 2 "unknown option --ligth: did you mean --light?" "$MERLIN" relight photo.png --ligth 0,0,0
 refuses 2 'no command "estimat"' "$MERLIN" help estimat
 succeeds "usage: merlin stereo calibrate " "$MERLIN" help stereo calibrate
-for command in render train eval bench; do
+for command in render train eval export bench; do
     refuses 2 "merlin: $command is a command of another program: merlin-lab $command (try merlin --help)" "$MERLIN" $command --help
 done
 succeeds "usage: merlin estimate" "$MERLIN" help estimate photo.png
