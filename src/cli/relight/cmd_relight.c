@@ -24,6 +24,7 @@
 #include "command/photo_hint.h"
 #include "command/photos.h"
 #include "command/standard_input.h"
+#include "estimate/photo/photo_doubts.h"
 #include "estimate/relight/relighter.h"
 
 static const char help[] =
@@ -343,7 +344,7 @@ static void doubt_darkness(const relight_result *result, warnings *doubts)
 /* Lists the doubts of the photograph first, if the maps are made of one now. */
 static void find_doubts(const relight_job *job, const relight_result *result, warnings *doubts)
 {
-    merlin_maps_warnings(job->maps, doubts);
+    doubts_list(job->maps, doubts);
     for (size_t i = 0; i < job->lamps.noticed.count; i++)
         warnings_add(doubts, job->lamps.noticed.at[i].code, "%s", job->lamps.noticed.at[i].message);
     doubt_environment(job->environment, doubts);
@@ -363,7 +364,7 @@ static void find_doubts(const relight_job *job, const relight_result *result, wa
 
 static status print_json(const request *r, const relight_job *job, const relight_result *result, double seconds)
 {
-    warnings doubts;
+    warnings doubts = {0};
     find_doubts(job, result, &doubts);
     cJSON *report = report_begin(&doubts);
     json_put_text(report, "input", standard_input_is(r->input) ? "-" : r->input);
@@ -383,7 +384,7 @@ static status print_json(const request *r, const relight_job *job, const relight
 
 static status announce(const request *r, const relight_job *job, const relight_result *result, double seconds)
 {
-    warnings doubts;
+    warnings doubts = {0};
     find_doubts(job, result, &doubts);
     if (!r->quiet) warnings_print(&doubts, "relight", standard_input_name(r->input), WARNINGS_MOST);
     if (r->json) return print_json(r, job, result, seconds);

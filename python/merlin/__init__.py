@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: MIT
+"""merlin: one photograph of an object, taken apart into its material and lit again from elsewhere.
+
+    import merlin
+
+    maps = merlin.Model().estimate("cup.jpg")
+    maps.albedo, maps.normal, maps.roughness, maps.depth     # numpy, float32, of the photograph's size
+    relit = maps.relight((0.7, 0.3, -0.4))                    # a lamp to the right: H x W x 3, linear
+    merlin.write_image("relit.png", relit)
+
+    surface = merlin.stereo(["a.png", "b.png", "c.png", ...], directions)
+    surface.save("surface.glb")
+
+Images are linear sRGB float32, rows from the top. Space: the camera is at the origin and looks along -z, x right, y up;
+the object stands near (0, 0, -1). What goes wrong is a MerlinError with the library's sentence. Several threads may
+call; a process that is forked after the first call may not.
+"""
+from ._call import call as _call
+from ._call import check as _check
+from ._call import library as _library
+from ._call import whole as _whole
+from .calibration import Calibration, calibrate
+from .capture import Capture, Light, Surface, stereo
+from .errors import (BadInputError, CannotWriteError, DeviceError, MerlinError, MerlinWarning, MissingFileError,
+                     NoMemoryError, StoppedError, WrongUseError)
+from .maps import Maps, Mended
+from .model import FoundObject, Model, estimate, find_object, read_shot
+from .pictures import read_image, read_mask, to_pixels, write_image
+from .relighting import Environment, Relighter
+from .results import Camera, Circle, Crop, FoundLight, Notice, Shot, SkippedFile
+from .weights import Tensor, Weights
+
+__version__: str = _library.merlin_version().decode()
+
+
+def set_threads(count: int) -> None:
+    """How many threads work for each that calls the library, from its next call on: 1 to 1024, or as many of them as
+    can be had. Without it OMP_NUM_THREADS, else one a processor."""
+    _check("set_threads", _whole(count, "the number of threads"))
+
+
+def version() -> str:
+    """Of the library that runs, "0.1.0"."""
+    return _call("version").decode()
+
+
+__all__ = [
+    "BadInputError", "Calibration", "Camera", "CannotWriteError", "Capture", "Circle", "Crop", "DeviceError",
+    "Environment", "FoundLight", "FoundObject", "Light", "Maps", "Mended", "MerlinError", "MerlinWarning",
+    "MissingFileError", "Model", "NoMemoryError", "Notice", "Relighter", "Shot", "SkippedFile", "StoppedError",
+    "Surface", "Tensor", "Weights", "WrongUseError", "calibrate", "estimate", "find_object", "read_image", "read_mask", "read_shot",
+    "set_threads", "stereo", "to_pixels", "version", "write_image",
+]

@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: MIT
+"""The public headers of include/merlin, as ctypes has them: structures, constants and functions.
+
+Nothing here has a meaning of its own. tests/test_headers.py compiles a C program over the headers and compares every
+offset, size, constant and function with it, so that a header that changes breaks that test and no user.
+"""
+from __future__ import annotations
+
+import ctypes
+from ctypes import CFUNCTYPE, POINTER, c_char, c_char_p, c_double, c_float, c_int, c_size_t, c_ssize_t, c_uint
+from ctypes import c_int64, c_uint64, c_void_p
+from typing import Any, Dict, List, Tuple
+
+floats3 = c_float * 3
+floats9x3 = (c_float * 3) * 9
+
+# ---- status.h ----
+
+OK, WRONG_USE, BAD_INPUT, CANNOT_WRITE, NO_MEMORY, DEVICE_FAILED, STOPPED = range(7)
+Progress = CFUNCTYPE(None, c_void_p, c_char_p, c_float)
+Stop = CFUNCTYPE(c_int)
+_WATCH = [("stop", Stop), ("progress", Progress), ("progress_context", c_void_p)]
+
+
+class Struct(ctypes.Structure):
+    """A structure of the library; `c_name` is its name there, without merlin_."""
+
+    c_name = ""
+
+
+def _struct(c_name: str, fields: List[Tuple[str, Any]]) -> Any:
+    return type(c_name, (Struct,), {"c_name": c_name, "_fields_": fields})
+
+
+# ---- image.h, files.h, warnings.h, camera.h ----
+
+Image = _struct("image", [("width", c_int), ("height", c_int), ("channels", c_int), ("data", c_void_p)])
+PIXEL_8, PIXEL_16, PIXEL_FLOAT = range(3)
+PixelLayout = _struct("pixel_layout", [
+    ("width", c_int), ("height", c_int), ("channels", c_int), ("type", c_int), ("linear", c_int),
+    ("stride", c_ssize_t)])
+Files = _struct("files", [("at", POINTER(c_char_p)), ("count", c_size_t), ("bytes", c_uint64)])
+SkippedFile = _struct("skipped_file", [("name", c_char_p), ("why", c_char_p)])
+SkippedFiles = _struct("skipped_files", [("at", POINTER(SkippedFile)), ("count", c_size_t)])
+MOST_WARNINGS, WARNING_WORDS = 24, 512
+Warned = _struct("warning", [("code", c_char_p), ("message", c_char * WARNING_WORDS)])
+Warnings = _struct("warnings", [("count", c_size_t), ("more", c_size_t), ("at", Warned * MOST_WARNINGS)])
+Camera = _struct("camera", [("focal", c_float), ("x", c_float), ("y", c_float), ("distance", c_float)])
+
+# ---- maps.h ----
+
+FoundLight = _struct("found_light", [
+    ("known", c_int), ("flash", c_float), ("lamp", floats3), ("lamp_sure", c_float), ("lamp_distance", c_float),
+    ("lamp_strength", floats3), ("rest", floats9x3)])
+MASK_GIVEN, MASK_FOUND = range(2)
+Timing = _struct("timing", [
+    (name, c_double) for name in ("mask", "prepare", "choose", "compile", "network", "upsample")])
+Crop = _struct("maps.crop", [("x", c_int), ("y", c_int), ("side", c_int)])
+Mended = _struct("maps.mended", [(name, c_float) for name in ("normal", "albedo", "roughness", "depth")])
+MAP_NAMES = ("albedo", "normal", "roughness", "depth", "mask", "photo", "reconstruction")
+Maps = _struct("maps", [(name, Image) for name in MAP_NAMES] + [
+    ("crop", Crop), ("size", c_int), ("gain", c_float), ("burnt_out", c_float), ("mask_source", c_int),
+    ("has_environment", c_int), ("environment", floats9x3), ("light", FoundLight), ("mask_confidence", c_float),
+    ("model", c_char * 64), ("timing", Timing), ("doubts", c_uint), ("light_elsewhere", c_float), ("reduced", c_int),
+    ("frames", c_int), ("fov", c_float), ("slant", c_float * 2), ("mended", Mended)])
+DOUBTS = (
+    "NO_OBJECT", "BURNT_OUT", "OBJECT_UNSURE", "LIGHT_ELSEWHERE", "NO_FLASH", "LIGHT_BEHIND", "HOLLOW", "DRAWING",
+    "LENS_NARROW", "LENS_WIDE", "DARK", "OBJECT_CUT", "OBJECT_SMALL", "GREY", "REDUCED", "FIRST_FRAME",
+    "NORMALS_NOT_UNIT", "ALBEDO_CLAMPED", "ROUGHNESS_CLAMPED", "DEPTH_CLAMPED")
+
+# ---- estimate.h ----
+
+FLASH_UNKNOWN, FLASH_NONE, FLASH_FIRED = range(3)
+Shot = _struct("shot", [("flash", c_int), ("focal_35mm", c_float), ("reduced", c_int), ("frames", c_int)])
+MOST_POINTS = 16
+Point = _struct("hint.point[0]", [("x", c_int), ("y", c_int)])
+Box = _struct("hint.box", [("x", c_int), ("y", c_int), ("width", c_int), ("height", c_int)])
+Hint = _struct("hint", [("point_count", c_int), ("point", Point * MOST_POINTS), ("box", Box)])
+LEAST_SIZE, LARGEST_SIZE, SIZE_STEP = 64, 512, 32
+Params = _struct("params", [
+    ("size", c_int), ("views", c_int), ("auto_exposure", c_int), ("exposure", c_float), *_WATCH, ("shot", Shot),
+    ("flash", c_int), ("fov", c_float), ("hint", Hint), ("last", c_int)])
+Object = _struct("object", [("mask", Image), ("source", c_int), ("confidence", c_float), ("seconds", c_double)])
+
+# ---- relight.h ----
+
+BY_BRDF, BY_NETWORK, BY_BRDF_UNSHADOWED, BY_BRDF_DIRECT = range(4)
+
+# ---- stereo.h ----
+
+DISTANT_LIGHTS, NEAR_LIGHTS, UNKNOWN_LIGHTS = range(3)
+Light = _struct("light", [("direction", floats3), ("position", floats3), ("intensity", floats3), ("lobe", c_float)])
+CaptureFiles = _struct("capture_files", [
+    ("lights", c_char_p), ("mask", c_char_p), ("ambient", c_char_p), ("near_lights", c_int),
+    ("unknown_lights", c_int), ("linear", c_int), ("field_of_view", c_float), ("distance", c_float), *_WATCH])
+CaptureParams = _struct("capture_params", [
+    ("lighting", c_int), ("unknown_intensities", c_int), ("field_of_view", c_float), ("distance", c_float)])
+STEREO_AUTO, STEREO_LS, STEREO_ROBUST, STEREO_NEAR, STEREO_SEMI, STEREO_UNCALIBRATED = range(6)
+StereoParams = _struct("stereo_params", [
+    ("method", c_int), ("keep_edges", c_int), ("integrate", c_int), ("iterations", c_int), ("unchecked", c_int),
+    *_WATCH])
+SURFACE_NAMES = ("normal", "albedo", "depth", "residual", "mask")
+Surface = _struct("surface", [(name, Image) for name in SURFACE_NAMES] + [
+    ("camera", Camera), ("method", c_int), ("lights", POINTER(Light)), ("light_count", c_int), ("lights_near", c_int),
+    ("strengths_unsure", c_int), ("distance_unsure", c_int), ("lights_unsure", c_int), ("warnings", Warnings)])
+
+# ---- calibrate.h ----
+
+CHROME_BALL, MATTE_BALL = range(2)
+CalibrateParams = _struct("calibrate_params", [
+    ("ball", c_int), ("mask", c_char_p), ("linear", c_int), ("field_of_view", c_float), *_WATCH])
+Circle = _struct("circle", [("x", c_float), ("y", c_float), ("radius", c_float)])
+Calibration = _struct("calibration", [
+    ("ball", c_int), ("circle", Circle), ("from_mask", c_int), ("mask_file", c_char_p), ("count", c_int),
+    ("names", POINTER(c_char_p)), ("lights", POINTER(Light)), ("highlights", POINTER(Circle)),
+    ("residuals", POINTER(c_float)), ("warnings", Warnings), ("skipped", SkippedFiles), ("brightest", Image)])
+
+# ---- view.h ----
+
+VIEW_SIDE, VIEW_LEAST_SIDE, VIEW_MOST_SIDE = 2048, 64, 4096
+ViewParams = _struct("view_params", [("name", c_char_p), ("folder", c_char_p), ("side", c_int), ("captured", c_int)])
+
+# ---- weights.h ----
+
+COST_SIDE = 256
+Tensor = _struct("tensor", [("name", c_char_p), ("type", c_char_p), ("rank", c_int), ("shape", c_int64 * 4)])
+Weights = _struct("weights", [
+    ("name", c_char * 64), ("parameters", c_size_t), ("statistics", c_size_t), ("gmac", c_double),
+    ("tensor_count", c_size_t), ("tensors", POINTER(Tensor)), ("file", c_void_p)])
+
+# ---- functions ----
+
+_handle = c_void_p  # an opaque structure of the library
+_out = POINTER(c_void_p)
+_at = POINTER
+_light3 = POINTER(c_float)
+
+# Name without merlin_: what it returns, what it takes.
+FUNCTIONS: Dict[str, Tuple[Any, List[Any]]] = {
+    "error": (c_char_p, []),
+    "version": (c_char_p, []),
+    "set_threads": (c_int, [c_int]),
+    "image_read": (c_int, [c_char_p, _at(Image), _at(Image)]),
+    "mask_read": (c_int, [c_char_p, _at(Image)]),
+    "image_write": (c_int, [c_char_p, _at(Image)]),
+    "image_free": (None, [_at(Image)]),
+    "image_from_pixels": (c_int, [c_void_p, _at(PixelLayout), _at(Image), _at(Image)]),
+    "mask_from_pixels": (c_int, [c_void_p, _at(PixelLayout), _at(Image)]),
+    "image_to_pixels": (c_int, [_at(Image), _at(Image), _at(PixelLayout), c_void_p]),
+    "files_free": (None, [_at(Files)]),
+    "model_open": (c_int, [c_char_p, _out]),
+    "model_add_flash": (c_int, [_handle, c_char_p]),
+    "model_close": (None, [_handle]),
+    "model_name": (c_char_p, [_handle]),
+    "model_prepare": (c_int, [_handle, _at(Params)]),
+    "weights_read": (c_int, [c_char_p, _at(Weights)]),
+    "weights_metadata": (c_char_p, [_at(Weights), c_char_p]),
+    "weights_free": (None, [_at(Weights)]),
+    "maps_free": (None, [_at(Maps)]),
+    "doubt_code": (c_char_p, [c_int]),
+    "doubt_message": (c_int, [_at(Maps), c_int, c_char_p, c_int]),
+    "maps_write": (c_int, [_handle, _at(Maps), c_char_p]),
+    "maps_read": (c_int, [c_char_p, _at(Maps)]),
+    "shot_read": (c_int, [c_char_p, _at(Shot)]),
+    "params_default": (Params, []),
+    "estimate": (c_int, [_handle, _at(Image), _at(Image), _at(Params), _at(Maps)]),
+    "object_find": (c_int, [_at(Image), _at(Image), _at(Hint), _at(Object)]),
+    "object_free": (None, [_at(Object)]),
+    "estimate_object": (c_int, [_handle, _at(Image), _at(Object), _at(Params), _at(Maps)]),
+    "relight": (c_int, [_handle, _at(Maps), _light3, c_int, _at(Image)]),
+    "environment_read": (c_int, [c_char_p, c_float, c_float, _out]),
+    "environment_free": (None, [_handle]),
+    "relight_environment": (c_int, [_handle, _at(Maps), _handle, _light3, c_int, _at(Image)]),
+    "relight_found": (c_int, [_handle, _at(Maps), c_float, c_int, _at(Image)]),
+    "relighter_new": (c_int, [_handle, _at(Maps), c_int, c_int, _out]),
+    "relighter_render": (c_int, [_handle, _light3, _handle, _at(Image)]),
+    "relighter_free": (None, [_handle]),
+    "capture_read": (c_int, [c_char_p, _at(CaptureFiles), _out]),
+    "capture_new": (c_int, [_at(CaptureParams), _at(Image), _out]),
+    "capture_add": (c_int, [_handle, _at(Image), _at(Light)]),
+    "capture_free": (None, [_handle]),
+    "stereo": (c_int, [_handle, _at(StereoParams), _at(Surface)]),
+    "surface_free": (None, [_at(Surface)]),
+    "mesh_write": (c_int, [c_char_p, _at(Surface)]),
+    "calibrate": (c_int, [c_char_p, _at(CalibrateParams), _at(Calibration)]),
+    "calibration_free": (None, [_at(Calibration)]),
+    "calibration_write": (c_int, [_at(Calibration), c_char_p, _at(Files)]),
+    "view_write": (c_int, [_at(Maps), _at(ViewParams), c_char_p]),
+}

@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: MIT
+"""Photometric stereo: the surface of an object from pictures of it under many lights."""
+from __future__ import annotations
+
+import ctypes
+import os
+from typing import Any, List, NamedTuple, Optional, Sequence, Tuple, Union
+
+import numpy as np
+
+from . import _headers as h
+from . import pictures
+from ._call import Owner, ProgressCallback, StopCallback, Watch, check, choice, is_path, optional_path, path_bytes
+from ._call import real, vector3, view, whole
+from .errors import WrongUseError
+from .pictures import PathLike, Picture
+from .results import Camera, Notice, notices, warn
+
+METHODS = {"auto": h.STEREO_AUTO, "ls": h.STEREO_LS, "robust": h.STEREO_ROBUST, "near": h.STEREO_NEAR,
+           "semi": h.STEREO_SEMI, "uncalibrated": h.STEREO_UNCALIBRATED}
+LIGHTING = {"distant": h.DISTANT_LIGHTS, "near": h.NEAR_LIGHTS, "unknown": h.UNKNOWN_LIGHTS}
+NOWHERE = (0.0, 0.0, 0.0)
+
+
+class Light(NamedTuple):
+    """A light of a capture. A diffuse white surface appears with intensity * cos, or near ones' intensity * cos /
+    distance^2."""
+
+    direction: Any = NOWHERE  #: distant: from the object to the light; near: where an LED points (zeros: nowhere)
+    position: Any = NOWHERE  #: near: in the camera's space, any unit
+    intensity: Any = NOWHERE  #: by channel, the first alone for grey pictures; zeros: 1
+    lobe: float = 0.0  #: near: exponent of an LED's fall-off with the cosine of the angle to its direction
+
+    def _struct(self) -> Any:
+        intensity = np.broadcast_to(np.asarray(self.intensity, dtype=np.float32), (3,))
+        return h.Light(vector3(self.direction, "a light's direction"), vector3(self.position, "a light's position"),
+                       vector3(intensity, "a light's intensity"), real(self.lobe, "a light's lobe"))
+
+
+def light_of(struct: Any) -> Light:
+    """The structure as a tuple of arrays."""
+    return Light(*(np.array(getattr(struct, name), dtype=np.float32) for name in ("direction", "position", "intensity")),
+                 struct.lobe)
+
+
+class Capture:
+    """Pictures of one still object by one camera, one light at a time.
+
+    lighting: "distant" (directions are known), "near" (positions are) or "unknown". unknown_intensities: how strong the
+    lights are is not known. mask: the object, as of Model.estimate; None: what is brighter than black and than a dark
+    edge of the pictures. field_of_view: horizontal, degrees; 0: the camera is far away (60 with near lights). distance:
+    of the object from the camera, in the unit of the positions; 0: not known."""
+
+    def __init__(self, lighting: str = "distant", *, mask: Optional[Picture] = None, unknown_intensities: bool = False,
+                 field_of_view: float = 0.0, distance: float = 0.0) -> None:
+        params = h.CaptureParams(choice(lighting, LIGHTING, "lighting"), int(unknown_intensities),
+                                 real(field_of_view, "field_of_view"), real(distance, "distance"))
+        cover = None if mask is None else pictures.mask(mask)
+        self._owner = Owner(ctypes.c_void_p(), "capture_free")
+        check("capture_new", ctypes.byref(params), None if cover is None else cover.at, self._owner.at)
+
+    @classmethod
+    def read(cls, folder: PathLike, *, lights: Optional[PathLike] = None, mask: Optional[PathLike] = None,
+             ambient: Optional[PathLike] = None, near: bool = False, unknown: bool = False, linear: bool = False,
+             field_of_view: float = 0.0, distance: float = 0.0, progress: Optional[ProgressCallback] = None,
+             stop: Optional[StopCallback] = None) -> "Capture":
+        """Reads a folder of pictures and the lights they were taken under (docs/captures.md).
+
+        lights: lights.txt or an .lp file; None: the folder's. mask, ambient: pictures; None: the folder's, if any.
+        near: the list holds positions. unknown: wherever lights are said to be, they are not known. linear: 8-bit
+        pictures are linear. Progress and stop: as of Model.estimate."""
+        name = path_bytes(folder)
+        files = h.CaptureFiles(optional_path(lights), optional_path(mask), optional_path(ambient), int(near),
+                               int(unknown), int(linear), real(field_of_view, "field_of_view"),
+                               real(distance, "distance"))
+        watch = Watch(progress, stop)
+        watch.put(files)
+        made = cls.__new__(cls)
+        made._owner = Owner(ctypes.c_void_p(), "capture_free")
+        watch.check("capture_read", name, ctypes.byref(files), made._owner.at, path=os.fsdecode(name))
+        return made
+
+    def add(self, picture: Picture, light: Optional[Light] = None, *, linear: Optional[bool] = None) -> None:
+        """Adds a picture, a file or an array of H x W or H x W x 3, all alike and of the mask's size; linear values in
+        [0, 1], from 0.98 on they count as saturated. light: None: nothing is known of it."""
+        color, _alpha = pictures.picture(picture, linear, "a picture of a capture")
+        image, _kept = color.struct, color
+        if not is_path(picture) and (np.ndim(picture) == 2 or np.shape(picture)[2] == 1):
+            image, _kept = pictures.image_for(view(color, color.struct)[:, :, 0])
+        check("capture_add", self._owner.struct, ctypes.byref(image),
+              None if light is None else ctypes.byref(light._struct()))
+
+    def stereo(self, method: str = "auto", *, keep_edges: bool = False, integrate: bool = False, iterations: int = 0,
+               check_result: bool = True, progress: Optional[ProgressCallback] = None,
+               stop: Optional[StopCallback] = None) -> "Surface":
+        """Solves for the surface, from 3 pictures on (7 if the lights are unknown).
+
+        method: "auto" (by what is known of the lights), "ls", "robust", "near", "semi" or "uncalibrated". keep_edges:
+        depth may jump where the normals say so. integrate: depth that is solved with the normals is integrated from
+        them once more. iterations: at most, of "near" and "semi"; 0: the method's own. check_result: hold the result
+        against other lights, lenses and tones, for warnings. Progress and stop: as of Model.estimate."""
+        params = h.StereoParams(choice(method, METHODS, "method"), int(keep_edges), int(integrate),
+                                whole(iterations, "iterations"), int(not check_result))
+        watch = Watch(progress, stop)
+        watch.put(params)
+        owner = Owner(h.Surface(), "surface_free")
+        watch.check("stereo", self._owner.struct, ctypes.byref(params), owner.at)
+        surface = Surface(owner)
+        warn(surface.warnings)
+        return surface
+
+
+class Surface:
+    """What photometric stereo found: arrays of float32 of the pictures' height and width, zero where the mask is. They
+    show the library's memory: nothing is copied, and an array keeps its surface alive."""
+
+    def __init__(self, owner: Owner) -> None:
+        self._owner = owner
+        struct = owner.struct
+        self.normal: np.ndarray = view(owner, struct.normal)  #: H x W x 3, unit, z > 0 toward the camera
+        self.albedo: np.ndarray = view(owner, struct.albedo)  #: H x W or x 3; relative unless intensities are known
+        #: H x W, along -z: in the unit of the distance (1 if not known), in pixels for a camera far away
+        self.depth: np.ndarray = view(owner, struct.depth)
+        self.residual: np.ndarray = view(owner, struct.residual)  #: H x W, root mean square left by the fit, a share
+        self.mask: np.ndarray = view(owner, struct.mask)  #: H x W, 0 or 1
+        self.camera = Camera(struct.camera.focal, struct.camera.x, struct.camera.y, struct.camera.distance)
+        self.method: str = next(name for name, number in METHODS.items() if number == struct.method)  #: the one used
+        self.lights_near: bool = bool(struct.lights_near)  #: the found lights have positions, too
+        self.strengths_unsure: bool = bool(struct.strengths_unsure)
+        self.distance_unsure: bool = bool(struct.distance_unsure)
+        self.lights_unsure: bool = bool(struct.lights_unsure)
+        #: what speaks against the pictures, their lights and the result, the gravest first
+        self.warnings: Tuple[Notice, ...] = notices(struct.warnings)
+        #: one a picture, as "semi" and "uncalibrated" found them; else None
+        self.lights: Optional[List[Light]] = (
+            [light_of(struct.lights[i]) for i in range(struct.light_count)] if struct.lights else None)
+
+    def __repr__(self) -> str:
+        return f"<merlin.Surface {self.mask.shape[0]} x {self.mask.shape[1]} by {self.method}>"
+
+    def save(self, path: PathLike) -> None:
+        """Writes the front as triangles, by the path's ending: .ply with vertex colours, .obj (with .mtl and .png
+        beside it), .glb with albedo and normals as textures. Albedo is scaled so that its brightest are 0.9."""
+        check("mesh_write", path_bytes(path), self._owner.at)
+
+
+# ---- the short way ----
+
+
+def _rows(values: Any, count: int, what: str) -> np.ndarray:
+    array = np.asarray(values, dtype=np.float32)
+    if array.shape != (count, 3):
+        raise WrongUseError(f"{count} pictures want {what} of shape ({count}, 3), not {array.shape}")
+    return array
+
+
+def _strengths(intensities: Any, count: int) -> np.ndarray:
+    if intensities is None or isinstance(intensities, str):
+        return np.zeros((count, 3), np.float32)
+    array = np.asarray(intensities, dtype=np.float32)
+    return _rows(array[:, None] * np.ones(3, np.float32) if array.shape == (count,) else array, count, "intensities")
+
+
+def _lights(lights: Any, positions: Any, intensities: Any, count: int) -> Tuple[str, List[Optional[Light]]]:
+    """What is known of the lights, and each."""
+    if lights is not None and positions is not None:
+        raise ValueError("lights are known by their directions (lights) or by their positions, not by both")
+    if isinstance(intensities, str) and intensities != "unknown":
+        raise ValueError(f'intensities are numbers or "unknown", not {intensities!r}')
+    strength = _strengths(intensities, count)
+    if positions is not None:
+        return "near", [Light(position=p, intensity=s) for p, s in zip(_rows(positions, count, "positions"), strength)]
+    if lights is None:
+        known = strength.any()
+        return "unknown", [Light(intensity=s) if known else None for s in strength]
+    lights = list(lights)
+    if lights and all(isinstance(light, Light) for light in lights):
+        if len(lights) != count:
+            raise WrongUseError(f"{count} pictures want as many lights, not {len(lights)}")
+        return "near" if any(np.any(light.position) for light in lights) else "distant", lights
+    return "distant", [Light(direction=d, intensity=s) for d, s in zip(_rows(lights, count, "lights"), strength)]
+
+
+def stereo(images: Union[Capture, PathLike, Sequence[Picture], np.ndarray], lights: Any = None, *,
+           positions: Any = None, intensities: Any = None, mask: Optional[Picture] = None, method: str = "auto",
+           field_of_view: float = 0.0, distance: float = 0.0, linear: Optional[bool] = None, **options: Any) -> Surface:
+    """The surface of an object from pictures of it under many lights.
+
+    images: a Capture, a folder (lights: its list, or None: by the folder), or a sequence of files or arrays (H x W or
+    H x W x 3, all alike). Of a sequence lights is N x 3, directions from the object to each light, or N Light, or None:
+    unknown. positions: N x 3, instead, of near lights in the camera's space. intensities: N, N x 3, "unknown", or None:
+    all 1. mask, field_of_view, distance: as of Capture; linear: as of Model.estimate; other options: of
+    Capture.stereo."""
+    if isinstance(images, Capture):
+        return images.stereo(method, **options)
+    if is_path(images):
+        if positions is not None or intensities is not None:
+            raise ValueError("positions and intensities of a folder are in its files; Capture.read has near=True")
+        capture = Capture.read(images, lights=lights, mask=mask, linear=bool(linear), field_of_view=field_of_view,
+                               distance=distance, progress=options.get("progress"), stop=options.get("stop"))
+        return capture.stereo(method, **options)
+    images = list(images)
+    lighting, known = _lights(lights, positions, intensities, len(images))
+    capture = Capture(lighting, mask=mask, unknown_intensities=isinstance(intensities, str),
+                      field_of_view=field_of_view, distance=distance)
+    for picture, light in zip(images, known):
+        capture.add(picture, light, linear=linear)
+    return capture.stereo(method, **options)

@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: MIT
+"""Maps: what an object is made of, pixel by pixel."""
+from __future__ import annotations
+
+import ctypes
+import os
+from typing import TYPE_CHECKING, Any, Dict, NamedTuple, Optional, Tuple, Union
+
+import numpy as np
+
+from . import _headers as h
+from ._call import Owner, call, check, optional_path, path_bytes, view, whole
+from .errors import WrongUseError
+from .pictures import PathLike
+from .results import Crop, FoundLight, Notice, found_light, warn
+
+if TYPE_CHECKING:
+    from .model import Model
+    from .relighting import Environment, Relighter
+
+_SENTENCE = 1024
+
+
+class Mended(NamedTuple):
+    """Shares of the object, in [0, 1], whose values were corrected when maps were read."""
+
+    normal: float
+    albedo: float
+    roughness: float
+    depth: float
+
+
+def _map(name: str, words: str) -> Any:
+    def get(self: "Maps") -> Any:
+        return self._views.get(name)
+
+    def put(self: "Maps", value: Any) -> None:
+        if name not in self._views:
+            raise ValueError(f"these maps have no {name}")
+        self._views[name][...] = value
+
+    return property(get, put, doc=words)
+
+
+class Maps:
+    """The maps of a photograph: arrays of float32, of the photograph's height and width, zero where the mask is.
+
+    They show the library's memory: nothing is copied, an array keeps its maps alive, and what is written into one
+    (`maps.albedo *= 0.5`) is what `relight` and `view` see. Space: the camera is at the origin and looks along -z, x
+    right, y up; the object stands near (0, 0, -1)."""
+
+    albedo: np.ndarray = _map("albedo", "H x W x 3, linear sRGB, in [0, 1]: the diffuse colour.")
+    normal: np.ndarray = _map("normal", "H x W x 3, unit vectors, z > 0 toward the camera.")
+    roughness: np.ndarray = _map("roughness", "H x W, in [0.03, 1].")
+    depth: np.ndarray = _map("depth", "H x W, distance along -z in scene units (the object is about 1 away).")
+    mask: np.ndarray = _map("mask", "H x W, coverage in [0, 1].")
+    photo: np.ndarray = _map("photo", "H x W x 3, linear: the photograph times the mask.")
+    reconstruction: Optional[np.ndarray] = _map("reconstruction", """H x W x 3, linear: the maps under the photograph's
+        own light, exposed as by relight. None in maps that were loaded.""")
+
+    def __init__(self, owner: Owner, model: "Optional[Model]") -> None:
+        self._owner, self._model = owner, model
+        self._views = {name: view(owner, getattr(owner.struct, name)) for name in h.MAP_NAMES
+                       if getattr(owner.struct, name).data}
+
+    @property
+    def _struct(self) -> Any:
+        return self._owner.struct
+
+    @property
+    def height(self) -> int:
+        """Rows of the photograph."""
+        return self._struct.albedo.height
+
+    @property
+    def width(self) -> int:
+        """Columns of the photograph."""
+        return self._struct.albedo.width
+
+    @property
+    def crop(self) -> Crop:
+        """The square around the object, in pixels of the photograph."""
+        return Crop(self._struct.crop.x, self._struct.crop.y, self._struct.crop.side)
+
+    @property
+    def size(self) -> int:
+        """What the square was resized to for the network, at most 256: for all but fine normals."""
+        return self._struct.size
+
+    @property
+    def fov(self) -> Optional[float]:
+        """How wide the crop is, degrees; None: the lens is not known, and the maps take it for 60."""
+        return self._struct.fov or None
+
+    @property
+    def slant(self) -> Tuple[float, float]:
+        """Where the crop's middle is as seen from the lens: sines to the right and upwards."""
+        return tuple(self._struct.slant)
+
+    @property
+    def gain(self) -> float:
+        """The photograph times this is radiance under a flash of power 5.95."""
+        return self._struct.gain
+
+    @property
+    def burnt_out(self) -> float:
+        """Share of the object's values at the photograph's white, in [0, 1]; from 0.1 on the maps are poor."""
+        return self._struct.burnt_out
+
+    @property
+    def mask_source(self) -> str:
+        """"given" or "found"."""
+        return "given" if self._struct.mask_source == h.MASK_GIVEN else "found"
+
+    @property
+    def mask_confidence(self) -> float:
+        """1 for a given mask; how likely a found one is right, in [0, 1] (below 0.5: check it)."""
+        return self._struct.mask_confidence
+
+    @property
+    def light(self) -> Optional[FoundLight]:
+        """The photograph's light, as models of any light see it; None: this model knows one light alone."""
+        return found_light(self._struct.light)
+
+    @property
+    def light_elsewhere(self) -> float:
+        """How likely the photograph was lit from elsewhere than the lens, in [0, 1]."""
+        return self._struct.light_elsewhere
+
+    @property
+    def environment(self) -> Optional[np.ndarray]:
+        """9 x 3, spherical harmonics of the surroundings' radiance, of models that know a flash in a room; or None."""
+        return np.array(self._struct.environment, dtype=np.float32) if self._struct.has_environment else None
+
+    @property
+    def model_name(self) -> str:
+        """Of the weights the maps are by."""
+        return self._struct.model.decode("utf-8", "replace")
+
+    @property
+    def reduced(self) -> int:
+        """So many of the file's pixels a side became one: 0 or 1 for most."""
+        return self._struct.reduced
+
+    @property
+    def frames(self) -> int:
+        """Of an animation, whose first picture alone was read: 0 or 1 for most."""
+        return self._struct.frames
+
+    @property
+    def timing(self) -> Dict[str, float]:
+        """Seconds of each stage."""
+        return {name: getattr(self._struct.timing, name) for name, _type in h.Timing._fields_}
+
+    @property
+    def mended(self) -> Mended:
+        """What was corrected of maps that were loaded; zeros of others."""
+        return Mended(*(getattr(self._struct.mended, name) for name in Mended._fields))
+
+    @property
+    def doubts(self) -> Tuple[Notice, ...]:
+        """Why the maps may be wrong, the gravest first."""
+        text = ctypes.create_string_buffer(_SENTENCE)
+        found = []
+        for bit in range(len(h.DOUBTS)):
+            if self._struct.doubts & 1 << bit:
+                call("doubt_message", self._owner.at, 1 << bit, text, _SENTENCE)
+                found.append(Notice(call("doubt_code", 1 << bit).decode(), text.value.decode("utf-8", "replace")))
+        return tuple(found)
+
+    def __repr__(self) -> str:
+        return f"<merlin.Maps {self.height} x {self.width} by {self.model_name}>"
+
+    # ---- light ----
+
+    def _sound(self) -> Any:
+        """The structure's address, for a call that takes maps which may have been changed."""
+        for name in ("albedo", "normal", "roughness", "depth", "mask"):
+            if not np.isfinite(self._views[name]).all():
+                raise WrongUseError(f"these maps' {name} has values that are not finite")
+        return self._owner.at
+
+    def _lighting_model(self, model: "Optional[Model]") -> "Model":
+        from .model import Model
+        if model is not None:
+            return model
+        if self._model is None:
+            self._model = Model(self.model_name)
+        return self._model
+
+    def relight(self, light: Any = None, *, environment: "Union[Environment, PathLike, None]" = None,
+                turn: float = 0.0, exposure: float = 0.0, by: str = "brdf",
+                model: "Optional[Model]" = None) -> np.ndarray:
+        """The object under other light: H x W x 3 float32, linear, in [0, 1], of the photograph's exposure.
+
+        light: a lamp's place (x, y, z) in scene units, of the flash's power, (0, 0, 0) being the lens; "found": the
+        light that was found in the photograph; or None. environment: surroundings, an Environment or a
+        latitude-longitude picture's path, with the lamp or alone. turn: degrees by which the found light or the
+        picture is turned about the vertical, at 90 what was ahead of the camera is to its right. exposure: EV, of a
+        picture's path. by: "brdf" (with cast shadows and the network's global illumination), "direct" (without the
+        latter), "unshadowed" (as in the paper) or "network" (the decoder of models that have one). model: another than
+        the maps'."""
+        from .relighting import relight
+        return relight(self._lighting_model(model), self, light, environment, turn, exposure, by)
+
+    def relighter(self, side: int = 0, *, by: str = "brdf", model: "Optional[Model]" = None) -> "Relighter":
+        """The maps made ready for many lights, of which each takes a fraction of the time then. side: pixels a side of
+        the pictures, which show the square `crop`; 0: as many as it has; at most 8000."""
+        from .relighting import Relighter
+        return Relighter(self, side, by=by, model=model)
+
+    # ---- files ----
+
+    def save(self, folder: PathLike, *, model: "Optional[Model]" = None) -> None:
+        """Writes maps.exr, the PNGs, overview.png and report.json into a folder, which is made if need be: all of them
+        or, after a failure, none. WrongUseError for maps without a reconstruction, such as loaded ones."""
+        check("maps_write", self._lighting_model(model)._handle.struct, self._sound(), path_bytes(folder))
+
+    @classmethod
+    def load(cls, folder: PathLike, *, model: "Optional[Model]" = None) -> "Maps":
+        """Reads maps.exr of a folder of maps, edited or not. model: to relight them by; None: the weights of the name
+        they tell, opened when they are first needed. Warns of what had to be corrected."""
+        name = path_bytes(folder)
+        owner = Owner(h.Maps(), "maps_free")
+        check("maps_read", name, owner.at, path=os.fsdecode(name))
+        made = cls(owner, model)
+        warn(made.doubts)
+        return made
+
+    def view(self, path: PathLike, *, name: Optional[str] = None, folder: Optional[PathLike] = None, side: int = 0,
+             captured: bool = False) -> None:
+        """Writes one HTML page that any browser opens, offline, and in which the maps are lit.
+
+        name: what the page is called. folder: of the maps, for the commands that the page tells. side: pixels a side,
+        64 to 4096 (0: at most 2048). captured: the maps are a surface of photometric stereo."""
+        params = h.ViewParams(None if name is None else name.encode(), optional_path(folder), whole(side, "side"),
+                              int(captured))
+        check("view_write", self._sound(), ctypes.byref(params), path_bytes(path))

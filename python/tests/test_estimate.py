@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: MIT
+"""Photographs become maps; maps are lit, changed, written and read."""
+import os
+import pathlib
+import warnings
+
+import numpy as np
+import pytest
+
+import merlin
+
+
+def test_maps_are_arrays_of_the_photographs_size(kept_maps, photo):
+    """Values as documented."""
+    m = kept_maps
+    height, width = photo[0].shape[:2]
+    assert m.albedo.shape == m.normal.shape == m.photo.shape == m.reconstruction.shape == (height, width, 3)
+    assert m.roughness.shape == m.depth.shape == m.mask.shape == (height, width)
+    inside = m.mask == 1
+    np.testing.assert_allclose(np.linalg.norm(m.normal[inside], axis=-1), 1, atol=1e-3)
+    assert (m.normal[inside][:, 2] > 0).all() and m.roughness[inside].min() >= 0.03 - 1e-6
+    assert (m.albedo[m.mask == 0] == 0).all() and 0 <= m.albedo.min() and m.albedo.max() <= 1
+    assert m.depth[inside].min() > 0.2 and m.depth.dtype == np.float32
+    assert (m.height, m.width) == (height, width) and m.crop.side > 0 and m.size == 64
+    assert m.mask_source == "given" and m.mask_confidence == 1 and m.model_name == "merlin-any"
+    assert m.fov is None and m.gain > 0 and 0 <= m.burnt_out <= 1 and m.mended == (0, 0, 0, 0)
+    assert m.light is not None and m.light.rest.shape == (9, 3) and m.environment is None
+    assert set(m.timing) >= {"network"} and "128 x 128" in repr(m)
+
+
+def test_a_file_and_its_array_have_the_same_maps(quick, demo):
+    """To the last bit, whatever names the file."""
+    color, alpha = merlin.read_image(demo)
+    ours = quick(color[::2, ::2], alpha[::2, ::2])
+    theirs = quick(merlin.to_pixels(color[::2, ::2], np.float32, linear=True), alpha[::2, ::2] >= 0.5)
+    np.testing.assert_array_equal(ours.mask >= 0.5, theirs.mask >= 0.5)
+    by_path, by_name = quick(pathlib.Path(demo)), quick(os.fsencode(demo))
+    np.testing.assert_array_equal(by_path.normal, by_name.normal)
+    np.testing.assert_array_equal(by_path.normal, quick(color, alpha).normal)
+
+
+def test_an_object_is_found_and_can_be_given(quick, photo):
+    """By its alpha, by points, by a mask."""
+    color, mask = photo
+    found = merlin.find_object(color, points=[(64, 64)])
+    assert found.source == "found" and 0 <= found.confidence <= 1 and found.mask.shape == mask.shape
+    maps = quick(color, found)
+    assert maps.mask_source == "found" and maps.mask_confidence == pytest.approx(found.confidence)
+    given = merlin.find_object(np.dstack([color, mask.astype(np.uint8) * 255]))
+    assert given.source == "given" and ((given.mask > 0.5) == mask).all()
+    with pytest.raises(merlin.WrongUseError):
+        merlin.find_object(color, mask, points=[(64, 64)])
+    with pytest.raises(ValueError, match="at most 16 points"):
+        merlin.find_object(color, points=[(1, 1)] * 17)
+    with pytest.raises(TypeError, match="whole number"):
+        merlin.find_object(color, points=[(0.5, 1)])
+
+
+def test_doubts_are_warnings_and_attributes(model, photo):
+    """What the library doubts is told."""
+    color, mask = photo
+    grey = np.repeat(color.mean(axis=2, keepdims=True), 3, axis=2).astype(np.uint8)
+    with pytest.warns(merlin.MerlinWarning, match=r"\(grey\)") as told:
+        maps = model.estimate(grey, mask, size=64, views=1)
+    assert "grey" in [doubt.code for doubt in maps.doubts]
+    assert told[0].filename == __file__
+
+
+def test_progress_is_told(quick, photo):
+    """Shares go from 0 to 1."""
+    told = []
+    quick(*photo, progress=lambda stage, share: told.append((stage, share)))
+    assert {stage for stage, _share in told} == {"estimating", "refining"}
+    assert all(0 <= share <= 1 for _stage, share in told)
+
+
+def test_the_lens_and_the_exposure_can_be_told(quick, photo):
+    """By their names."""
+    maps, brighter = quick(*photo, fov=40, exposure=0.5), quick(*photo, exposure=1.5)
+    assert maps.fov == pytest.approx(40, rel=0.05) and brighter.gain == pytest.approx(2 * maps.gain, rel=1e-4)
+
+
+def test_maps_are_relit(kept_maps):
+    """By lamps, by what was found, by surroundings; each way."""
+    right = kept_maps.relight((0.7, 0.3, -0.4))
+    assert right.shape == kept_maps.albedo.shape and 0 <= right.min() and right.max() <= 1
+    left = kept_maps.relight(np.array([-0.7, 0.3, -0.4]))
+    assert np.abs(left - right).mean() > 0.005
+    direct = kept_maps.relight((0.7, 0.3, -0.4), by="direct")
+    unshadowed = kept_maps.relight((0.7, 0.3, -0.4), by="unshadowed")
+    assert unshadowed.sum() >= direct.sum() > 0
+    assert kept_maps.relight("found", turn=30).mean() > 0
+    for wrong in ({"light": "sun"}, {}, {"light": (0, 0)}, {"light": (0, 0, 0), "by": "magic"},
+                  {"light": (0, 0, 0), "turn": 3}, {"light": (0, 0, np.nan)}, {"light": (0, 0, 0), "by": "network"}):
+        with pytest.raises(ValueError):
+            kept_maps.relight(**wrong)
+
+
+def write_hdr(path):
+    """A Radiance picture, bright to the right."""
+    rows = bytearray()
+    for _y in range(16):
+        for x in range(32):
+            rows += bytes((128, 128, 128, 132 if 20 <= x < 24 else 126))
+    path.write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16 +X 32\n" + bytes(rows))
+
+
+def test_maps_are_relit_by_surroundings(kept_maps, tmp_path):
+    """By a path or an Environment, with a lamp or without."""
+    write_hdr(tmp_path / "room.hdr")
+    alone = kept_maps.relight(environment=tmp_path / "room.hdr", by="direct")
+    turned = kept_maps.relight(environment=merlin.Environment(tmp_path / "room.hdr", turn=180), by="direct")
+    lamp = kept_maps.relight((0, 0, 0), environment=tmp_path / "room.hdr", by="direct")
+    assert alone.mean() > 0 and np.abs(alone - turned).max() > 0.01 and lamp.sum() > alone.sum()
+    with pytest.raises(merlin.MissingFileError):
+        kept_maps.relight(environment=tmp_path / "none.hdr")
+
+
+def test_a_relighter_is_as_relight(kept_maps):
+    """Of the crop."""
+    with kept_maps.relighter(64) as relighter:
+        picture = relighter((0.5, 0, -0.5))
+        assert picture.shape == (64, 64, 3) and picture.max() > 0.05
+        np.testing.assert_array_equal(picture, relighter.render((0.5, 0, -0.5)))
+        with pytest.raises(merlin.WrongUseError, match="neither a light nor"):
+            relighter.render()
+    with pytest.raises(ValueError, match="closed"):
+        relighter((0, 0, 0))
+    with pytest.raises(merlin.WrongUseError, match="8000"):
+        kept_maps.relighter(9000)
+
+
+def test_changed_maps_are_relit_as_changed(maps):
+    """Through the views; values that are not numbers are refused."""
+    before = maps.relight((0, 0, 0), by="direct")
+    maps.albedo *= 0.5
+    after = maps.relight((0, 0, 0), by="direct")
+    assert after.sum() < 0.8 * before.sum()
+    maps.roughness = 0.9
+    assert (maps.roughness == np.float32(0.9)).all()
+    with pytest.raises(ValueError):
+        maps.albedo = np.zeros((3, 3))
+    maps.normal[5, 5] = np.nan
+    for use in (lambda: maps.relight((0, 0, 0)), lambda: maps.relighter(64), lambda: maps.view("never.html")):
+        with pytest.raises(merlin.WrongUseError, match="normal.*not finite"):
+            use()
+
+
+def test_maps_are_saved_and_loaded(kept_maps, tmp_path):
+    """As the command writes them."""
+    kept_maps.save(tmp_path / "maps")
+    assert {"maps.exr", "albedo.png", "report.json", "overview.png"} <= {p.name for p in (tmp_path / "maps").iterdir()}
+    loaded = merlin.Maps.load(tmp_path / "maps")
+    np.testing.assert_allclose(loaded.albedo, kept_maps.albedo, atol=2e-3)
+    assert loaded.reconstruction is None and loaded.crop == kept_maps.crop and loaded.model_name == "merlin-any"
+    relit = loaded.relight((0.7, 0.3, -0.4))
+    np.testing.assert_allclose(relit, kept_maps.relight((0.7, 0.3, -0.4)), atol=0.02)
+    with pytest.raises(merlin.WrongUseError, match="no reconstruction"):
+        loaded.save(tmp_path / "again")
+    with pytest.raises(merlin.MissingFileError):
+        merlin.Maps.load(tmp_path / "nowhere")
+    with pytest.raises(merlin.CannotWriteError):
+        kept_maps.save("/proc/merlin")
+
+
+def test_a_page_is_written(kept_maps, tmp_path):
+    """One file."""
+    kept_maps.view(tmp_path / "viewer.html", name="cup", side=64)
+    text = (tmp_path / "viewer.html").read_text(encoding="utf-8")
+    assert "<html" in text and "cup" in text
+    with pytest.raises(merlin.WrongUseError):
+        kept_maps.view(tmp_path / "viewer.html", side=7)
+
+
+def test_a_model_is_opened_by_name_and_closed(demo):
+    """Maps outlive it."""
+    with merlin.Model("merlin-point") as model:
+        assert model.name == "merlin-point" and "merlin-point" in repr(model)
+        model.prepare(size=64, views=1)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            maps = model.estimate(demo, size=64, views=1, last=True)
+        network = maps.relight((0.3, 0, -0.5), by="network")
+        relighter = maps.relighter(64)
+    assert network.mean() > 0 and relighter((0, 0, 0)).mean() > 0
+    with pytest.raises(ValueError, match="closed"):
+        model.estimate(demo)
+    with pytest.raises(ValueError, match="closed"):
+        maps.relight((0, 0, 0))
+    assert maps.albedo.mean() > 0 and "closed" in repr(model)
+
+
+def test_the_default_model_is_the_commands(monkeypatch, demo):
+    """merlin-any, with merlin-point for flashes; or $MERLIN_MODEL."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        assert merlin.estimate(demo, size=64, views=1, flash=True).model_name == "merlin-point"
+        monkeypatch.setenv("MERLIN_MODEL", "merlin-env")
+        maps = merlin.Model().estimate(demo, size=64, views=1)
+    assert maps.model_name == "merlin-env" and maps.environment.shape == (9, 3)
+    monkeypatch.setenv("MERLIN_MODEL", "merlin-none")
+    with pytest.raises(merlin.MissingFileError, match="MERLIN_MODEL: there is no weights file merlin-none"):
+        merlin.Model()
+
+
+def test_how_a_photograph_was_taken_is_read(demo):
+    """By its file, which tells nothing here."""
+    assert merlin.read_shot(demo) == (None, 0, 1, 1)
+
+
+def test_weights_tell_what_they_are(source):
+    """As merlin info does."""
+    weights = merlin.Weights("merlin-any")
+    assert weights.name == "merlin-any" and weights.config["name"] == "merlin-any" and weights.gmac > 1
+    held = sum(int(np.prod(one.shape)) for one in weights.tensors)
+    assert weights.parameters <= held <= weights.parameters + weights.statistics + 1000
+    assert weights.metadata("nothing of the kind") is None and weights.metadata("samples")
+    with pytest.raises(merlin.BadInputError):
+        merlin.Weights(source + "/README.md")

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: MIT
+"""Surfaces from pictures under many lights, and the lights from pictures of a ball."""
+import warnings
+
+import numpy as np
+import pytest
+
+import merlin
+
+
+@pytest.fixture(autouse=True)
+def no_warnings():
+    """Of pictures as small as these."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", merlin.MerlinWarning)
+        yield
+
+
+def error_degrees(surface, truth, inside):
+    """Mean angle between normals."""
+    on = inside & (surface.mask > 0)
+    return np.degrees(np.arccos(np.clip((surface.normal[on] * truth[on]).sum(axis=-1), -1, 1))).mean()
+
+
+def test_a_ball_under_known_lights_is_a_ball(sphere):
+    """By arrays, a stack of arrays, files, a folder, and Light."""
+    lights, pictures, normal, inside = sphere
+    surface = merlin.stereo(list(pictures), lights, mask=inside)
+    assert surface.method == "robust" and error_degrees(surface, normal, inside) < 2
+    assert surface.albedo.shape == surface.depth.shape == surface.mask.shape == (64, 64)
+    assert surface.normal.shape == (64, 64, 3) and surface.lights is None and surface.camera.focal == 0
+    by_light = merlin.stereo(pictures, [merlin.Light(direction=d) for d in lights], mask=inside, method="ls")
+    assert by_light.method == "ls" and error_degrees(by_light, normal, inside) < 2
+
+
+def test_files_and_folders_are_read(sphere, tmp_path):
+    """16 bits would be linear; 8-bit ones are sRGB."""
+    lights, pictures, normal, inside = sphere
+    paths = [tmp_path / f"{i}.png" for i in range(len(lights))]
+    for path, picture in zip(paths, pictures):
+        merlin.write_image(path, np.repeat(picture[:, :, None], 3, axis=2))
+    assert error_degrees(merlin.stereo(paths, lights, mask=inside), normal, inside) < 3
+    np.savetxt(tmp_path / "lights.txt", lights)
+    told = []
+    surface = merlin.stereo(tmp_path, progress=lambda stage, share: told.append(stage))
+    assert error_degrees(surface, normal, inside) < 3 and {"reading", "solving", "integrating"} <= set(told)
+
+
+def test_unknown_lights_are_found(sphere):
+    """One a picture."""
+    lights, pictures, _normal, inside = sphere
+    surface = merlin.stereo(list(pictures), None, mask=inside)
+    assert surface.method == "uncalibrated" and len(surface.lights) == len(lights)
+    found = np.array([light.direction for light in surface.lights])
+    assert found.shape == lights.shape and np.isfinite(found).all()
+
+
+def test_near_lights_have_positions(sphere):
+    """And a camera."""
+    lights, pictures, _normal, inside = sphere
+    surface = merlin.stereo(list(pictures), positions=lights * [1, 1, -1], mask=inside, field_of_view=30, distance=1,
+                            iterations=1, check_result=False)
+    assert surface.method == "near" and surface.camera.focal > 0
+
+
+def test_intensities_are_used(sphere):
+    """A number or three a picture, or found."""
+    lights, pictures, normal, inside = sphere
+    strength = np.linspace(0.5, 1, len(lights)).astype(np.float32)
+    dimmed = list(pictures * strength[:, None, None])
+    known = merlin.stereo(dimmed, lights, intensities=strength, mask=inside)
+    assert error_degrees(known, normal, inside) < 2
+    found = merlin.stereo(dimmed, lights, intensities="unknown", mask=inside)
+    assert found.method == "semi" and len(found.lights) == len(lights)
+
+
+def test_a_surface_is_a_mesh_file(sphere, tmp_path):
+    """By its ending."""
+    lights, pictures, _normal, inside = sphere
+    surface = merlin.stereo(list(pictures), lights, mask=inside)
+    surface.save(tmp_path / "ball.ply")
+    assert (tmp_path / "ball.ply").read_bytes().startswith(b"ply")
+    with pytest.raises(ValueError):
+        surface.save(tmp_path / "ball.xyz")
+
+
+WRONG = {
+    "no pictures": ([], None, "no pictures"), "too few": (2, None, "."), "lights of another number": (8, 5, "of shape"),
+    "no folder": ("/nowhere/at/all", None, "no folder"), "sizes": ("sizes", None, "."),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_capture_is_refused(name, sphere):
+    """In the library's words."""
+    lights, pictures, _normal, _inside = sphere
+    images, known, words = WRONG[name]
+    if images == "sizes":
+        images = [pictures[0], pictures[1][1:], pictures[2]]
+    elif isinstance(images, int):
+        images = list(pictures[:images])
+    with pytest.raises(ValueError, match=words):
+        merlin.stereo(images, None if known is None else lights[:known])
+
+
+def test_wrong_words_are_refused(sphere):
+    """What may stand where is told."""
+    lights, pictures, _normal, _inside = sphere
+    for wrong in ({"method": "magic"}, {"intensities": "strong"}, {"positions": lights}, {"intensities": [1, 2]},
+                  {"method": "near"}, {"field_of_view": np.nan}):
+        with pytest.raises(ValueError):
+            merlin.stereo(list(pictures), lights, **wrong)
+    with pytest.raises(ValueError, match="'distant', 'near', 'unknown'"):
+        merlin.Capture("bright")
+
+
+def chrome(light, size=128, radius=50):
+    """A mirror ball with the light's highlight."""
+    half = light / np.linalg.norm(light) + [0, 0, 1]
+    half /= np.linalg.norm(half)
+    y, x = np.mgrid[:size, :size] + 0.5
+    spot = np.hypot(x - size / 2 - radius * half[0], y - size / 2 + radius * half[1]) < 3
+    ball = np.hypot(x - size / 2, y - size / 2) < radius
+    return np.where(spot, 1.0, 0.02 * ball)
+
+
+def test_lights_are_calibrated_by_a_ball(sphere, tmp_path):
+    """Within three degrees, by its mask."""
+    lights = sphere[0]
+    for i, light in enumerate(lights):
+        merlin.write_image(tmp_path / f"{i}.png", chrome(light))
+    y, x = np.mgrid[:128, :128] + 0.5
+    merlin.write_image(tmp_path / "mask.png", (np.hypot(x - 64, y - 64) < 50).astype(np.float32))
+    found = merlin.calibrate(tmp_path)
+    assert (found.directions * lights).sum(axis=1).min() > np.cos(np.radians(3))
+    assert found.names == [f"{i}.png" for i in range(8)] and found.from_mask and found.mask_file.endswith("mask.png")
+    assert found.circle.radius == pytest.approx(50, abs=1) and len(found.highlights) == 8 and found.residuals is None
+    assert found.brightest.shape == (128, 128, 3) and found.ball == "chrome"
+    written = found.save(tmp_path / "out")
+    assert sorted(path.rsplit("/", 1)[1] for path in written) == ["calibration.png", "lights.txt"]
+    with pytest.raises(ValueError, match="'chrome', 'matte'"):
+        merlin.calibrate(tmp_path, "glass")
+    with pytest.raises(merlin.MissingFileError):
+        merlin.calibrate(tmp_path / "nowhere")
