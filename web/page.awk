@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: MIT
-# Puts the viewer's page together: index.html with the style, the shaders and the modules in it.
+# Puts a page together: index.html with the style, the shaders and the modules in it.
 #
 #     awk -f web/page.awk -v folder=web -v out=page.html
 #     awk -f web/page.awk -v folder=web -v out=view_page.c     as src/view/view_page.h declares it
+#     awk -f web/page.awk -v folder=web/serve -v header=serve/serve_texts.h -v name=serve_page -v out=serve_page.c
+#
+# Another page than index.html is named by -v page_file=NAME.
 #
 # Each module becomes a function that gives back what it exports, those first that others import, so that names are the
 # module's own. Imports and exports stand at the beginning of a line, an export before what it exports.
@@ -89,8 +92,11 @@ function put_lines(text,    lines, n, i) {
 
 BEGIN {
     is_c = out ~ /\.c$/
-    if (is_c) print "/* Made by web/page.awk. */\n#include \"view/view_page.h\"\n\nconst char *const view_page_head[] = {" >out
-    n = split(read("index.html"), page, "\n")
+    if (!header) header = "view/view_page.h"
+    if (!name) name = "view_page_head"
+    if (!page_file) page_file = "index.html"
+    if (is_c) print "/* Made by web/page.awk. */\n#include \"" header "\"\n\nconst char *const " name "[] = {" >out
+    n = split(read(page_file), page, "\n")
     for (i = 1; i < n; i++) {
         line = page[i]
         if (line == "/*style*/") put_lines(read("style.css"))

@@ -8,6 +8,7 @@ static const cli_command commands[] = {
     {"relight", "show the object of a photograph under other light", cmd_relight},
     {"view", "the maps as a page that a browser opens and lights", cmd_view},
     {"stereo", "surfaces from many lights, or from one photograph", cmd_stereo},
+    {"serve", "a page and an HTTP interface for all of this", cmd_serve},
     {"info", "say what is in a weights file", cmd_info},
 };
 

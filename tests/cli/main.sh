@@ -14,7 +14,7 @@ refuses 2 'no option "--verson": did you mean --version?' "$MERLIN" --verson
 refuses 2 'no command "quux" (try' "$MERLIN" quux
 refuses 2 "for a photograph, merlin estimate $scratch/cup.jpg" "$MERLIN" "$(touch "$scratch/cup.jpg" && echo "$scratch/cup.jpg")"
 refuses 2 'no command "photo?.png"' "$MERLIN" $'photo\n.png'
-for command in estimate relight view stereo info; do
+for command in estimate relight view stereo serve info; do
     succeeds "$command" "$MERLIN" --help
     succeeds "[Uu]sage: merlin $command" "$MERLIN" "$command" --help
     succeeds "[Uu]sage: merlin $command" "$MERLIN" help "$command"

@@ -1,0 +1,271 @@
+/* SPDX-License-Identifier: MIT */
+#include "serve/http/requests.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/json/json_put.h"
+#include "base/text/report.h"
+#include "serve/http/answer.h"
+#include "serve/jobs/work_find.h"
+
+/* What is remembered of a request until its body is there. */
+typedef struct request {
+    const work_kind *kind; /* of a POST; NULL: another, whose body is not read */
+    upload *upload;        /* NULL: it will be refused */
+    uint64_t ignored;      /* bytes of a body that nobody reads */
+    unsigned code;         /* refused with this, once its body is over; 0: it is not */
+    const char *fault, *words;
+} request;
+
+enum { LONGEST_IGNORED = 64 << 10 };
+
+/* ---- who asks ---- */
+
+static enum MHD_Result refuse_asker(const request_site *site, struct MHD_Connection *c, guard_answer answer)
+{
+    switch (answer) {
+    case GUARD_NO_HOST:
+        return answer_error(c, MHD_HTTP_FORBIDDEN, "wrong_host",
+                            site->guard.local ? "this server answers to 127.0.0.1 and localhost alone"
+                                              : "this server does not answer to that name: merlin serve --name NAME");
+    case GUARD_OTHER_SITE:
+        return answer_error(c, MHD_HTTP_FORBIDDEN, "other_site", "other sites' pages may not ask this server");
+    default:
+        return answer_error(c, MHD_HTTP_UNAUTHORIZED, "no_token",
+                            "this server wants its token: Authorization: Bearer TOKEN, or /?token=TOKEN in a browser");
+    }
+}
+
+static guard_answer ask(const request_site *site, struct MHD_Connection *c, bool is_page)
+{
+    char cookie[GUARD_COOKIE];
+    guard_cookie(&site->guard, cookie);
+    const guard_asked asked = {
+        .host = http_header(c, "Host"),
+        .origin = http_header(c, "Origin"),
+        .fetch_site = http_header(c, "Sec-Fetch-Site"),
+        .authorization = http_header(c, "Authorization"),
+        .cookie = http()->lookup_connection_value(c, MHD_COOKIE_KIND, cookie),
+        .is_page = is_page,
+    };
+    return guard_ask(&site->guard, &asked);
+}
+
+/* A browser that brings the token in the page's address gets it as a cookie, which no script can read. */
+static bool signs_in(const request_site *site, struct MHD_Connection *c)
+{
+    const char *token = http()->lookup_connection_value(c, MHD_GET_ARGUMENT_KIND, "token");
+    return site->guard.token && token && guard_is_token(&site->guard, token);
+}
+
+static enum MHD_Result sign_in(const request_site *site, struct MHD_Connection *c)
+{
+    char name[GUARD_COOKIE], cookie[512];
+    guard_cookie(&site->guard, name);
+    if (snprintf(cookie, sizeof cookie, "%s=%s; Path=/; HttpOnly; SameSite=Strict", name, site->guard.token) >=
+        (int)sizeof cookie)
+        return MHD_NO;
+    return answer_signed_in(c, cookie);
+}
+
+/* ---- GET and DELETE ---- */
+
+static enum MHD_Result not_found(struct MHD_Connection *c)
+{
+    return answer_error(c, MHD_HTTP_NOT_FOUND, "not_found", "there is no such thing here: see /v1/openapi.json");
+}
+
+static enum MHD_Result no_job(struct MHD_Connection *c)
+{
+    return answer_error(c, MHD_HTTP_NOT_FOUND, "no_job", "there is no such job, or it was removed");
+}
+
+static enum MHD_Result answer_status(const request_site *site, struct MHD_Connection *c)
+{
+    cJSON *o = cJSON_CreateObject(), *limits;
+    json_put_text(o, "version", merlin_version());
+    json_put_number(o, "schema", REPORT_SCHEMA);
+    json_put_text(o, "model", site->model);
+    json_put_number(o, "keep_seconds", site->keep);
+    jobs_put(site->jobs, o);
+    limits = json_put_object(o, "limits");
+    json_put_number(limits, "bytes", (double)site->limits.bytes);
+    json_put_number(limits, "files", (double)site->limits.files);
+    json_put_number(limits, "megapixels", site->work_limits.megapixels);
+    return answer_json(c, MHD_HTTP_OK, o, NULL);
+}
+
+/* rest: what follows /v1/jobs/. */
+static enum MHD_Result answer_job(const request_site *site, struct MHD_Connection *c, const char *rest, bool remove)
+{
+    static const char files[] = "/files/";
+    char id[STORE_ID];
+    uint64_t bytes = 0;
+    snprintf(id, sizeof id, "%s", rest);
+    if (!store_is_id(id)) return no_job(c);
+    rest += STORE_ID - 1;
+    if (!*rest && remove) return jobs_remove(site->jobs, id) ? answer_nothing(c) : no_job(c);
+    if (!*rest) {
+        cJSON *told = jobs_tell(site->jobs, id);
+        return told ? answer_json(c, MHD_HTTP_OK, told, NULL) : no_job(c);
+    }
+    if (remove || strncmp(rest, files, sizeof files - 1) != 0) return not_found(c);
+    const char *name = rest + sizeof files - 1;
+    const int descriptor = jobs_open_file(site->jobs, id, name, &bytes);
+    return descriptor < 0 ? not_found(c) : answer_file(c, descriptor, bytes, name);
+}
+
+static enum MHD_Result answer_get(const request_site *site, struct MHD_Connection *c, const char *url, bool remove)
+{
+    static const char of_jobs[] = "/v1/jobs/";
+    if (strncmp(url, of_jobs, sizeof of_jobs - 1) == 0) return answer_job(site, c, url + sizeof of_jobs - 1, remove);
+    if (remove) return not_found(c);
+    if (strcmp(url, "/") == 0) return answer_text(c, "text/html; charset=utf-8", site->page, site->page_policy);
+    if (strcmp(url, "/v1/openapi.json") == 0) return answer_text(c, "application/json", site->openapi, NULL);
+    if (strcmp(url, "/v1/status") == 0) return answer_status(site, c);
+    return not_found(c);
+}
+
+/* ---- POST ---- */
+
+static const work_kind *kind_of(const char *url)
+{
+    return strncmp(url, "/v1/", 4) == 0 ? work_find(url + 4) : NULL;
+}
+
+static void will_refuse(request *r, unsigned code, const char *fault, const char *words)
+{
+    r->code = code;
+    r->fault = fault;
+    r->words = words;
+}
+
+/* Returns the announced length of a body; 0 where it is not. */
+static uint64_t announced(struct MHD_Connection *c)
+{
+    const char *text = http_header(c, "Content-Length");
+    return text ? strtoull(text, NULL, 10) : 0;
+}
+
+/* Prepares for the body, or for its refusal. */
+static void begin_post(const request_site *site, struct MHD_Connection *c, request *r)
+{
+    if (!jobs_have_room(site->jobs)) {
+        will_refuse(r, MHD_HTTP_SERVICE_UNAVAILABLE, "busy", "too many jobs wait already: try again later");
+        return;
+    }
+    r->upload = upload_new(site->store, &site->limits, c);
+    if (!r->upload)
+        will_refuse(r, MHD_HTTP_SERVICE_UNAVAILABLE, "no_memory", "the server has no memory for this upload");
+}
+
+static enum MHD_Result refuse_upload(struct MHD_Connection *c, upload_fault fault)
+{
+    switch (fault) {
+    case UPLOAD_TOO_LARGE:
+        return answer_error(c, MHD_HTTP_CONTENT_TOO_LARGE, "too_large", status_message());
+    case UPLOAD_NO_ROOM:
+        return answer_error(c, MHD_HTTP_INSUFFICIENT_STORAGE, "no_room", status_message());
+    default:
+        return answer_error(c, MHD_HTTP_BAD_REQUEST, "wrong", status_message());
+    }
+}
+
+static enum MHD_Result answer_taken(const request_site *site, struct MHD_Connection *c, const char *id)
+{
+    char location[STORE_ID + 16];
+    snprintf(location, sizeof location, "/v1/jobs/%s", id);
+    cJSON *told = jobs_tell(site->jobs, id);
+    return told ? answer_json(c, MHD_HTTP_ACCEPTED, told, location) : no_job(c);
+}
+
+static enum MHD_Result end_post(const request_site *site, struct MHD_Connection *c, request *r)
+{
+    form f = {.bytes = 0};
+    char id[STORE_ID];
+    const upload_fault fault = upload_finish(r->upload, &f);
+    if (fault != UPLOAD_FINE) return refuse_upload(c, fault);
+    const jobs_answer answer = jobs_add(site->jobs, r->kind, &f, id);
+    if (answer == JOBS_TAKEN) return answer_taken(site, c, id);
+    store_remove(site->store, f.id);
+    form_free(&f);
+    switch (answer) {
+    case JOBS_REFUSED:
+        return answer_error(c, MHD_HTTP_BAD_REQUEST, "wrong", status_message());
+    case JOBS_FULL:
+        return answer_error(c, MHD_HTTP_SERVICE_UNAVAILABLE, "busy", "too many jobs wait already: try again later");
+    case JOBS_NONE:
+        return answer_error(c, MHD_HTTP_NOT_FOUND, "no_job", "the job that \"job\" names is not there, or not done");
+    default:
+        return answer_error(c, MHD_HTTP_INSUFFICIENT_STORAGE, "no_room", status_message());
+    }
+}
+
+/* ---- the callbacks ---- */
+
+/* Looks at a request's head. Returns NULL where it was answered, or its connection is to be closed: *result. */
+static request *begin(const request_site *site, struct MHD_Connection *c, const char *url, const char *method,
+                      enum MHD_Result *result)
+{
+    const bool is_get = strcmp(method, "GET") == 0 || strcmp(method, "HEAD") == 0;
+    const bool is_page = is_get && strcmp(url, "/") == 0, is_post = strcmp(method, "POST") == 0;
+    const guard_answer answer = ask(site, c, is_page);
+    request *r = NULL;
+    if (answer == GUARD_NO_TOKEN && is_page && signs_in(site, c))
+        *result = sign_in(site, c);
+    else if (answer != GUARD_PASSES)
+        *result = refuse_asker(site, c, answer);
+    else if (!is_get && !is_post && strcmp(method, "DELETE") != 0)
+        *result = answer_error(c, MHD_HTTP_METHOD_NOT_ALLOWED, "no_method", "GET, POST and DELETE alone are answered");
+    else if (is_post && !kind_of(url))
+        *result = not_found(c);
+    else if (announced(c) > (is_post ? site->limits.bytes : LONGEST_IGNORED))
+        *result =
+            answer_error(c, MHD_HTTP_CONTENT_TOO_LARGE, "too_large", "the request is larger than this server takes");
+    else
+        r = calloc(1, sizeof *r);
+    if (r && is_post) r->kind = kind_of(url);
+    if (r && is_post) begin_post(site, c, r);
+    return r;
+}
+
+/* Returns false where no more of a body is to be read. */
+static bool take(request *r, const char *data, size_t size)
+{
+    if (r->upload) return upload_take(r->upload, data, size);
+    r->ignored += size;
+    return r->ignored <= LONGEST_IGNORED || r->kind;
+}
+
+enum MHD_Result requests_answer(void *context, struct MHD_Connection *c, const char *url, const char *method,
+                                const char *version, const char *data, size_t *size, void **own)
+{
+    const request_site *site = context;
+    enum MHD_Result result = MHD_NO;
+    request *r = *own;
+    (void)version;
+    if (!r) {
+        *own = r = begin(site, c, url, method, &result);
+        return r ? MHD_YES : result;
+    }
+    if (*size) {
+        const size_t taken = *size;
+        *size = 0;
+        return take(r, data, taken) ? MHD_YES : MHD_NO;
+    }
+    if (r->code) return answer_error(c, r->code, r->fault, r->words);
+    return r->kind ? end_post(site, c, r) : answer_get(site, c, url, strcmp(method, "DELETE") == 0);
+}
+
+void requests_end(void *context, struct MHD_Connection *c, void **own, enum MHD_RequestTerminationCode code)
+{
+    request *r = *own;
+    (void)context;
+    (void)c;
+    (void)code;
+    if (r) upload_free(r->upload);
+    free(r);
+    *own = NULL;
+}

@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: MIT */
+/* The kinds of work that a client can ask for. Each checks what was sent at once, so that a mistake is told with the
+ * answer to the upload, and works when its turn comes.
+ *
+ *     const work_kind *kind = work_find("estimate");
+ *     void *request = NULL;
+ *     status s = kind->check(&form, &request);           the client waits
+ *     ...
+ *     if (s == OK) s = kind->run(&context, request);     in the worker's thread
+ *     free(request); */
+#ifndef MERLIN_SERVE_JOBS_WORK_H
+#define MERLIN_SERVE_JOBS_WORK_H
+
+#include <cJSON.h>
+
+#include "merlin/merlin.h"
+#include "serve/jobs/form.h"
+
+/* What holds for all work of a server. */
+typedef struct work_limits {
+    double megapixels; /* of a photograph, and of one picture of a capture */
+    int pictures;      /* of a capture, and lights of a relighting */
+} work_limits;
+
+typedef struct work_context {
+    merlin_model *model;
+    const store *store;
+    const form *form;
+    const work_limits *limits;
+    merlin_progress progress;
+    void *progress_context;
+    int (*stop)(void);
+    cJSON *report; /* of the job, for what the files do not say */
+} work_context;
+
+/* A stage as progress tells it, and its share of the time. */
+typedef struct work_stage {
+    const char *name;
+    float share;
+} work_stage;
+
+typedef struct work_kind {
+    const char *name;
+    const work_stage *stages; /* in their order, ended by one without a name */
+    /* *request is malloc'ed, and is freed by free. MERLIN_WRONG_USE names the field. */
+    status (*check)(const form *f, const work_limits *limits, void **request);
+    status (*run)(const work_context *w, const void *request);
+    const char
+        *uses; /* the file of an earlier job's results that the field "job" brings among the uploads; NULL: none */
+} work_kind;
+
+#endif

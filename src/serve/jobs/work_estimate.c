@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: MIT */
+/* A photograph to maps: the files of merlin estimate, and the page that lights them. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "serve/jobs/photo_form.h"
+#include "serve/jobs/work_kinds.h"
+
+typedef struct estimate_request {
+    merlin_params params;
+    int view;
+} estimate_request;
+
+static status check(const form *f, const work_limits *limits, void **request)
+{
+    static const form_key known[] = {PHOTO_KEYS, {"view", FORM_VALUE, 1}, {0}};
+    estimate_request *r = calloc(1, sizeof *r);
+    (void)limits;
+    *request = r;
+    if (!r) return fail(MERLIN_NO_MEMORY, "no memory for a request");
+    r->view = 1;
+    status s = form_check(f, "estimate", known);
+    if (s == OK) s = photo_form_params(f, &r->params);
+    return s == OK ? form_flag(f, "view", &r->view) : s;
+}
+
+/* The photograph's name without its ending. */
+static void name_of(const form *f, char name[SAFE_NAME])
+{
+    memcpy(name, form_find_file(f, "photo")->name, SAFE_NAME);
+    char *ending = strrchr(name, '.');
+    if (ending && ending != name) *ending = 0;
+}
+
+static status run(const work_context *w, const void *request)
+{
+    const estimate_request *r = request;
+    char folder[PATH_MAX], page[PATH_MAX], name[SAFE_NAME];
+    merlin_maps maps;
+    status s = photo_form_estimate(w, &r->params, &maps);
+    if (s != OK) return s;
+    name_of(w->form, name);
+    w->progress(w->progress_context, "writing", 0);
+    s = merlin_maps_write(w->model, &maps, store_path(w->store, w->form->id, STORE_OUT, NULL, folder));
+    if (s == OK && w->stop()) s = fail(MERLIN_STOPPED, "stopped");
+    const merlin_view_params view = {.name = name};
+    if (s == OK && r->view)
+        s = merlin_view_write(&maps, &view, store_path(w->store, w->form->id, STORE_OUT, "viewer.html", page));
+    merlin_maps_free(&maps);
+    return s;
+}
+
+static const work_stage stages[] = {{"reading", 0.1f},    {"finding the object", 0.15f},
+                                    {"estimating", 0.3f}, {"refining", 0.2f},
+                                    {"writing", 0.25f},   {0}};
+const work_kind work_estimate = {.name = "estimate", .stages = stages, .check = check, .run = run};

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT */
+/* merlin as a server: a page and an HTTP interface (docs/serve.md).
+ *
+ *     const serve_params params = {.model = model, .port = 8712, .keep_minutes = 30, ...};
+ *     serve *s;
+ *     if (serve_open(&params, &s) == OK) {
+ *         printf("%s\n", serve_address(s));
+ *         serve_run(s, stop);
+ *     }
+ *     serve_close(s);                     ends the work, removes all uploads and results
+ *
+ * It stands on the public library (include/merlin) and src/base alone. */
+#ifndef MERLIN_SERVE_SERVE_H
+#define MERLIN_SERVE_SERVE_H
+
+#include "base/status.h"
+#include "merlin/model.h"
+#include "serve/http/guard.h"
+
+typedef struct serve serve;
+
+typedef struct serve_params {
+    merlin_model *model;
+    const char *host;                     /* NULL: this machine alone, 127.0.0.1 */
+    const char *names[GUARD_MOST_NAMES];  /* further ones by which clients call it; ended by NULL */
+    const char *token;                    /* NULL: none, with `host` one is made up */
+    int port;                             /* 0: one that is free */
+    int keep_minutes;                     /* for which results stay */
+    int most_waiting;                     /* jobs in the queue */
+    int most_kept;                        /* results */
+    int upload_megabytes, kept_megabytes; /* of a request, of all results */
+    int megapixels;                       /* of a photograph */
+} serve_params;
+
+/* Binds the port and starts to answer. */
+status serve_open(const serve_params *params, serve **out);
+void serve_close(serve *s);
+
+/* Returns the address for a browser, with the token if there is one. */
+const char *serve_address(const serve *s);
+/* Returns when stop does so. */
+void serve_run(serve *s, int (*stop)(void));
+
+#endif

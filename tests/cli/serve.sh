@@ -1,0 +1,112 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# merlin serve from outside: what it answers, to whom, and what strangers cannot do to it.
+# shellcheck source=tests/cli/support/check.bash
+source "$(dirname "$0")/support/check.bash"
+# shellcheck source=tests/cli/support/server.bash
+source "$(dirname "$0")/support/server.bash"
+export OMP_WAIT_POLICY=passive # other tests may run beside this one
+demo=${MERLIN_SOURCE_DIR:?}/examples/demo.png
+cd "$scratch" || exit 1
+
+echo "wrong use is refused before anything is opened"
+refuses 2 'nothing is expected beside options' "$MERLIN" serve photo.png
+refuses 2 '--name goes with --host' "$MERLIN" serve --name example.org
+refuses 2 '--port wants a whole number' "$MERLIN" serve --port 65536
+echo short >token
+refuses 1 'its first line must be 16 to 128' "$MERLIN" serve --token token
+
+server_start || exit 77
+
+echo "the server's folder is open to its owner alone"
+[[ $(stat -c %a tmp/merlin-serve-*) == 700 ]] || complain "its mode is $(stat -c %a tmp/merlin-serve-*)"
+refuses 1 "cannot listen at 127.0.0.1, port $port" "$MERLIN" serve --port "$port"
+
+echo "maps over HTTP are merlin estimate's"
+"$MERLIN" estimate "$demo" -o own -q
+job=$(submit estimate -F photo=@"$demo")
+told "$job" | grep -q '"state":"done","progress":1,.*"files":\[.*"report":{.*"model":"merlin-point"' || complain "$(told "$job")"
+for name in maps.exr albedo.png normal.png mask.png; do
+    fetches "$job" "$name" got
+    cmp -s got "own/$name" || complain "$name is another than merlin estimate's"
+done
+fetches "$job" viewer.html viewer.html
+grep -q '"name":"demo"' viewer.html || complain "the viewer has no name"
+[[ -z $(ls -A tmp/merlin-serve-*/"$job"/in) ]] || complain "the upload stays: $(ls tmp/merlin-serve-*/"$job"/in)"
+
+echo "a mask is found, corrected and sent back, at a page's size"
+mask=$(submit mask -F photo=@"$demo" -F side=128)
+told "$mask" | grep -q '"width":512,"height":512,"mask_source":"' || complain "$(told "$mask")"
+fetches "$mask" mask.png mask.png
+fetches "$mask" photo.png photo.png
+painted=$(submit estimate -F photo=@"$demo" -F mask=@mask.png -F size=256 -F view=0)
+told "$painted" | grep -q '"state":"done"' || complain "a small mask: $(told "$painted")"
+told "$painted" | grep -q viewer.html && complain "view=0 makes a viewer"
+
+echo "what was sent is checked at once"
+asks 400 'no file \\"photo\\" was sent' "$site/v1/estimate" -F size=512
+asks 400 'size wants a multiple of 32, not 100' "$site/v1/estimate" -F photo=@"$demo" -F size=100
+asks 400 'views wants a whole number from 1 to 8' "$site/v1/estimate" -F photo=@"$demo" -F views=1e9
+asks 400 'knows no field \\"colour\\"' "$site/v1/estimate" -F photo=@"$demo" -F colour=red
+asks 400 'photo is given 2 times' "$site/v1/estimate" -F photo=@"$demo" -F photo=@"$demo"
+asks 400 'photo of estimate is a value\|its part needs a filename' "$site/v1/estimate" -F photo=text
+asks 400 'point wants 2 numbers' "$site/v1/estimate" -F photo=@"$demo" -F point=nan,3
+asks 400 'no multipart' "$site/v1/estimate" -H 'Content-Type: text/plain' -d photo
+asks 404 'no such thing' "$site/v1/paint" -F photo=@"$demo"
+asks 405 'GET, POST and DELETE' -X PUT "$site/v1/status"
+asks 405 "GET, POST and DELETE" -X OPTIONS -H "Origin: $site" "$site/v1/estimate"
+asks 403 other_site -X OPTIONS -H "Origin: http://example.org" "$site/v1/estimate"
+grep -qi 'access-control' head && complain "other sites' pages are let in"
+
+echo "what is no picture fails with a word, without the server's folders"
+wrong=$(submit estimate -F photo=@"$MERLIN_SOURCE_DIR/README.md")
+told "$wrong" | grep -q '"state":"failed".*"error":".*README.md' || complain "$(told "$wrong")"
+told "$wrong" | grep -q "$scratch" && complain "the server's folder is told: $(told "$wrong")"
+
+echo "names that clients send are never paths"
+for name in ../../escaped.png /tmp/escaped.png '..\escaped.png' .escaped.png 'a/../../escaped.png'; do
+    job=$(submit estimate -F "photo=@$demo;filename=\"$name\"" -F size=64 -F views=1 -F view=0)
+    told "$job" | grep -q '"state":"done"' || complain "$name: $(told "$job")"
+done
+find "$scratch" /tmp -maxdepth 3 -name '*escaped*' 2>/dev/null | grep -q . && complain "a file escaped"
+for name in ../../lock ../in/demo.png %2e%2e/%2e%2e/lock ..%2f..%2flock /etc/passwd .; do
+    asks 404 'no such thing' --path-as-is "$site/v1/jobs/$job/files/$name"
+done
+asks 404 'no such job' --path-as-is "$site/v1/jobs/../../etc/passwd"
+asks 404 'no such job' "$site/v1/jobs/00000000000000000000000000000000"
+
+echo "other sites' pages, and names that were made to point here, are refused"
+for host in evil.example "evil.example:$port" 127.0.0.1 "127.0.0.1:1" "localhost.evil.example:$port" "[::1" ''; do
+    asks 403 'wrong_host' -H "Host: $host" "$site/v1/status"
+done
+raw "GET /v1/status HTTP/1.0\r\n\r\n" | grep -q '40[03]' || complain "a request without Host is answered"
+for host in "localhost:$port" "LOCALHOST:$port" "[::1]:$port"; do asks 200 version -H "Host: $host" "$site/v1/status"; done
+for origin in http://evil.example null "http://127.0.0.1:1" "http://127.0.0.1:$port.evil.example" "file://127.0.0.1:$port"; do
+    asks 403 'other_site' -H "Origin: $origin" "$site/v1/estimate" -F photo=@"$demo"
+    asks 403 'other_site' -H "Origin: $origin" -X DELETE "$site/v1/jobs/$job"
+done
+asks 403 'other_site' -H 'Sec-Fetch-Site: cross-site' "$site/v1/status"
+asks 403 'other_site' -H 'Sec-Fetch-Site: same-site' "$site/v1/status"
+asks 200 '<title>merlin' -H 'Sec-Fetch-Site: cross-site' "$site/"
+grep -qi "content-security-policy: default-src 'none'.*frame-ancestors 'none'" head || complain "the page has no policy"
+asks 200 version -H "Origin: $site" -H 'Sec-Fetch-Site: same-origin' "$site/v1/status"
+
+echo "a job that is not wanted goes, with its files"
+asks 204 '' -X DELETE "$site/v1/jobs/$job"
+asks 404 'no such job' "$site/v1/jobs/$job"
+[[ ! -e $(echo tmp/merlin-serve-*/"$job") ]] || complain "its files stay"
+asks 202 "queued\|working" "$site/v1/estimate" -F photo=@"$demo"
+first=$(identifier <body)
+asks 202 '"state":"queued","position":[12]' "$site/v1/estimate" -F photo=@"$demo"
+second=$(identifier <body)
+asks 204 '' -X DELETE "$site/v1/jobs/$first"
+asks 204 '' -X DELETE "$site/v1/jobs/$second"
+
+echo "the interface describes itself"
+asks 200 '"openapi": "3' "$site/v1/openapi.json"
+cmp -s body "$MERLIN_SOURCE_DIR/docs/openapi.json" || complain "the description is another than docs/openapi.json"
+
+echo "a server that is told to end while it works ends, and leaves nothing"
+asks 202 "queued\|working" "$site/v1/estimate" -F photo=@"$demo"
+server_end TERM
+finish
