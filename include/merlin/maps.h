@@ -15,6 +15,7 @@
 
 #include <merlin/image.h>
 #include <merlin/model.h>
+#include <merlin/warnings.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -31,6 +32,12 @@ typedef struct merlin_found_light {
     float lamp_strength[3]; /* in the object's middle, by channel */
     float rest[9][3];       /* everything else: spherical harmonics of radiance, bands 0 to 2 */
 } merlin_found_light;
+
+/* Puts it in words for a person, such as "a lamp from the upper left, 40 degrees aside, in a room", into text as
+ * snprintf does; less than MERLIN_LIGHT_WORDS characters, none where nothing is known. It names what sends a seventh of
+ * the light or more. */
+enum { MERLIN_LIGHT_WORDS = 128 };
+int merlin_light_words(const merlin_found_light *light, char *text, int size);
 
 typedef enum merlin_mask_source { MERLIN_MASK_GIVEN, MERLIN_MASK_FOUND } merlin_mask_source;
 
@@ -109,15 +116,34 @@ const char *merlin_doubt_code(merlin_doubt doubt);
 /* Puts one doubt in words for a person: a sentence about these maps, without a full stop, into text as snprintf does.
  */
 int merlin_doubt_message(const merlin_maps *maps, merlin_doubt doubt, char *text, int size);
+/* Lists all doubts of these maps, each with its code and its words. */
+void merlin_maps_warnings(const merlin_maps *maps, merlin_warnings *out);
 
 /* ---- files ---- */
 
+/* All zeros is the usual case. */
+typedef struct merlin_write_params {
+    int in_place; /* 1: straight into the folder, which is there and which nobody looks into yet; after a failure some
+                   * files may be left in it */
+    int last; /* 1: no photograph follows, as of merlin_params: what the model lets go of now is not beside the files
+               * in memory */
+    int (*stop)(void); /* asked between files; returning nonzero ends the work with MERLIN_STOPPED; may be NULL */
+    merlin_progress progress; /* told "writing"; may be NULL */
+    void *progress_context;
+} merlin_write_params;
+
 /* Writes maps.exr, the PNGs, overview.png and report.json into a folder, which is made if need be: all of them or,
- * after a failure, none. The model adds two new lights to the overview. Of maps with a reconstruction only. */
-merlin_status merlin_maps_write(merlin_model *model, const merlin_maps *maps, const char *folder);
+ * after a failure, none. The model adds two new lights to the overview. Of maps with a reconstruction only. params
+ * NULL: the usual case. */
+merlin_status merlin_maps_write(merlin_model *model, const merlin_maps *maps, const merlin_write_params *params,
+                                const char *folder);
+/* Composes the text of report.json: what was done to a photograph, its doubts, the maps' statistics (docs/json.md has
+ * the names). It is yours to give to free. */
+merlin_status merlin_maps_report(const merlin_maps *maps, char **text);
 /* Reads maps.exr of such a folder, edited or not: values that are not finite, and maps that are wholly out of their
  * range or of another size than was written, are MERLIN_BAD_INPUT. The reconstruction stays without data. */
 merlin_status merlin_maps_read(const char *folder, merlin_maps *maps);
+
 #ifdef __cplusplus
 }
 #endif

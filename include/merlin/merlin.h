@@ -10,7 +10,7 @@
  *     if (merlin_image_read("cup.jpg", &photo, &alpha) || merlin_model_open("merlin-point.safetensors", &model) ||
  *         merlin_estimate(model, &photo, &alpha, NULL, &maps) ||
  *         merlin_relight(model, &maps, from_the_left, MERLIN_BY_BRDF, &relit) ||
- *         merlin_maps_write(model, &maps, "cup.merlin") || merlin_image_write("cup-from-left.png", &relit))
+ *         merlin_maps_write(model, &maps, NULL, "cup.merlin") || merlin_image_write("cup-from-left.png", &relit))
  *         fprintf(stderr, "%s\n", merlin_error());
  *
  * Each header is a subject: status.h (errors, progress, threads), image.h (pictures), camera.h (lenses), warnings.h

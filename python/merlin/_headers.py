@@ -67,6 +67,8 @@ DOUBTS = (
     "NO_OBJECT", "BURNT_OUT", "OBJECT_UNSURE", "LIGHT_ELSEWHERE", "NO_FLASH", "LIGHT_BEHIND", "HOLLOW", "DRAWING",
     "LENS_NARROW", "LENS_WIDE", "DARK", "OBJECT_CUT", "OBJECT_SMALL", "GREY", "REDUCED", "FIRST_FRAME",
     "NORMALS_NOT_UNIT", "ALBEDO_CLAMPED", "ROUGHNESS_CLAMPED", "DEPTH_CLAMPED")
+LIGHT_WORDS = 128
+WriteParams = _struct("write_params", [("in_place", c_int), ("last", c_int), *_WATCH])
 
 # ---- estimate.h ----
 
@@ -159,7 +161,10 @@ FUNCTIONS: Dict[str, Tuple[Any, List[Any]]] = {
     "maps_free": (None, [_at(Maps)]),
     "doubt_code": (c_char_p, [c_int]),
     "doubt_message": (c_int, [_at(Maps), c_int, c_char_p, c_int]),
-    "maps_write": (c_int, [_handle, _at(Maps), c_char_p]),
+    "light_words": (c_int, [_at(FoundLight), c_char_p, c_int]),
+    "maps_warnings": (None, [_at(Maps), _at(Warnings)]),
+    "maps_write": (c_int, [_handle, _at(Maps), _at(WriteParams), c_char_p]),
+    "maps_report": (c_int, [_at(Maps), POINTER(c_void_p)]),
     "maps_read": (c_int, [c_char_p, _at(Maps)]),
     "shot_read": (c_int, [c_char_p, _at(Shot)]),
     "params_default": (Params, []),

@@ -214,7 +214,7 @@ class Maps:
     def save(self, folder: PathLike, *, model: "Optional[Model]" = None) -> None:
         """Writes maps.exr, the PNGs, overview.png and report.json into a folder, which is made if need be: all of them
         or, after a failure, none. WrongUseError for maps without a reconstruction, such as loaded ones."""
-        check("maps_write", self._lighting_model(model)._handle.struct, self._sound(), path_bytes(folder))
+        check("maps_write", self._lighting_model(model)._handle.struct, self._sound(), None, path_bytes(folder))
 
     @classmethod
     def load(cls, folder: PathLike, *, model: "Optional[Model]" = None) -> "Maps":

@@ -107,6 +107,11 @@ status staging_begin(const char *folder, const char *const *inputs, staging **ou
     return s;
 }
 
+const char *staging_folder(const staging *t)
+{
+    return t->hidden;
+}
+
 const char *staging_path(const staging *t, const char *name, char path[PATH_MAX])
 {
     snprintf(path, PATH_MAX, "%s/%s", t->hidden, name);

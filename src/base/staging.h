@@ -24,6 +24,8 @@ typedef struct staging staging;
  * this and that a commit must not replace; each may be NULL, as may the array; the names must outlive t. */
 enum { STAGING_MOST_INPUTS = 4 };
 status staging_begin(const char *folder, const char *const *inputs, staging **out);
+/* Returns the hidden folder, for what writes several files by itself. */
+const char *staging_folder(const staging *t);
 /* Composes the path at which to write the future folder/name, and returns it. May be called from any thread. */
 const char *staging_path(const staging *t, const char *name, char path[PATH_MAX]);
 /* The library's own list of what was written, by a short name for the inside. */

@@ -26,9 +26,7 @@
 #include "command/photo_hint.h"
 #include "command/photos.h"
 #include "command/standard_input.h"
-#include "estimate/files/maps_files.h"
-#include "estimate/light/light_words.h"
-#include "estimate/photo/photo_doubts.h"
+#include "merlin/merlin.h"
 
 static const char help[] =
     "usage: merlin estimate PHOTO... [options]\n"
@@ -142,8 +140,10 @@ typedef struct lap_times {
 static status print_json(const request *r, const photo_job *job, const merlin_maps *maps, const staged_files *written,
                          const lap_times *laps)
 {
-    char *text = maps_report(maps);
-    cJSON *report = text ? cJSON_Parse(text) : NULL, *seconds = cJSON_GetObjectItem(report, "seconds");
+    char *text = NULL;
+    status s = merlin_maps_report(maps, &text);
+    if (s != OK) return s;
+    cJSON *report = cJSON_Parse(text), *seconds = cJSON_GetObjectItem(report, "seconds");
     json_put_text(report, "input", standard_input_is(job->photo) ? "-" : job->photo);
     json_line_files(report, job->output, written);
     if (job->mask) json_put_text(report, "mask_file", job->mask);
@@ -154,19 +154,19 @@ static status print_json(const request *r, const photo_job *job, const merlin_ma
     json_put_number(seconds, "read", laps->read);
     json_put_number(seconds, "write", laps->write);
     json_put_number(report, "seconds_total", laps->total);
-    status s = json_line_print(report);
+    s = json_line_print(report);
     cJSON_Delete(report);
     free(text);
     return s;
 }
 
-enum { LIT_BY = LIGHT_WORDS + 96 };
+enum { LIT_BY = MERLIN_LIGHT_WORDS + 96 };
 
 /* Writes words for the light that a model of any light sees, or for the other of two models that the maps are by. */
 static const char *lit_by(const request *r, const merlin_maps *maps, char words[LIT_BY])
 {
-    char light[LIGHT_WORDS];
-    light_words(&maps->light, light);
+    char light[MERLIN_LIGHT_WORDS];
+    merlin_light_words(&maps->light, light, sizeof light);
     *words = 0;
     if (*light)
         snprintf(words, LIT_BY, ", lit by %s", light);
@@ -187,8 +187,8 @@ static status announce(const request *r, const photo_job *job, const merlin_maps
     else if (!r->quiet)
         printf("%s: %s/overview.png (%.2f s, %s)%s\n", standard_input_name(job->photo), job->output, laps->total,
                written_words(written, amount), lit_by(r, maps, lit));
-    warnings doubts = {0};
-    doubts_list(maps, &doubts);
+    warnings doubts;
+    merlin_maps_warnings(maps, &doubts);
     if (r->html) page_doubt(maps->crop.side, 0, &doubts);
     if (!r->quiet) warnings_print(&doubts, "estimate", standard_input_name(job->photo), TOLD);
     return s;
@@ -223,9 +223,8 @@ static void plan(const request *r, double pixels)
     stage_bar_plan(r->bar, stages, count);
 }
 
-static status write_more(const void *context, const merlin_maps *maps, maps_staging *to)
+static status write_more(const more_work *w, const merlin_maps *maps, maps_staging *to)
 {
-    const more_work *w = context;
     char path[PATH_MAX];
     status s = w->request->mesh ? photo_mesh_write(maps, staging_path(to->at[0], "mesh.glb", path)) : OK;
     for (int i = 0; i < w->request->meshes.count && s == OK; i++) {
@@ -235,6 +234,26 @@ static status write_more(const void *context, const merlin_maps *maps, maps_stag
     }
     const page_source of = {standard_input_name(w->job->photo), w->job->output, 0, false};
     if (s == OK && w->request->html) s = page_write(maps, &of, staging_path(to->at[0], PAGE_FILE, path));
+    return s == OK && cli_interrupted() ? fail(MERLIN_STOPPED, "stopped") : s;
+}
+
+/* Writes the maps and what is written beside them: all of it or nothing. last: no photograph follows. */
+static status write_files(const more_work *w, const merlin_maps *maps, bool last, staged_files *written)
+{
+    const request *r = w->request;
+    const merlin_write_params params = {.in_place = 1,
+                                        .last = last,
+                                        .stop = cli_interrupted,
+                                        .progress = r->watch->tell,
+                                        .progress_context = r->watch->context};
+    maps_staging all = {.count = 1};
+    status s = staging_begin(w->job->output, w->inputs, &all.at[0]);
+    if (s != OK) return s;
+    s = merlin_maps_write(r->model, maps, &params, staging_folder(all.at[0]));
+    if (s == OK) s = write_more(w, maps, &all);
+    if (s == OK) return staging_commit_all(all.at, all.count, written);
+    while (all.count > 0)
+        s = staging_abort(all.at[--all.count], s);
     return s;
 }
 
@@ -246,24 +265,16 @@ static status take_apart(const request *r, const photo_job *job, photo_taken *ta
     merlin_maps maps = {0};
     staged_files written = {0};
     const char *const inputs[STAGING_MOST_INPUTS] = {job->photo, job->mask};
-    more_work more = {r, job, inputs};
+    const more_work more = {r, job, inputs};
     merlin_params params = r->params;
     params.progress = r->watch->tell;
     params.progress_context = r->watch->context;
     params.last = last;
     plan(r, (double)taken->photo.width * taken->photo.height);
-    maps_output to = {.folder = job->output,
-                      .inputs = inputs,
-                      .stop = cli_interrupted,
-                      .watch = r->watch,
-                      .last = last,
-                      .more = write_more,
-                      .context = &more,
-                      .written = &written};
     status s = photo_estimate(r->model, taken, &params, &maps);
     if (s != OK) s = fail_in(s, "%s", job->photo);
     lap(&clock);
-    if (s == OK) s = maps_write(r->model, &maps, &to);
+    if (s == OK) s = write_files(&more, &maps, last, &written);
     laps->write = lap(&clock);
     laps->total = laps->start + laps->model + laps->compile + laps->read + laps->mask + clock - began;
     if (s == OK) s = announce(r, job, &maps, &written, laps);

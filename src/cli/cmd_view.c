@@ -19,7 +19,6 @@
 #include "command/json_line.h"
 #include "command/options.h"
 #include "command/photos.h"
-#include "estimate/photo/photo_doubts.h"
 #include "merlin/view.h"
 
 static const char help[] =
@@ -91,9 +90,9 @@ static status print_json(const request *r, const char *folder, const staged_file
 static status announce(const request *r, const merlin_maps *maps, const char *folder, const staged_files *written,
                        double seconds)
 {
-    warnings doubts = {0};
+    warnings doubts;
     char amount[WRITTEN_WORDS];
-    doubts_list(maps, &doubts);
+    merlin_maps_warnings(maps, &doubts);
     page_doubt(maps->crop.side, r->side, &doubts);
     if (!r->quiet) warnings_print(&doubts, "view", r->input, WARNINGS_MOST);
     if (r->json) return print_json(r, folder, written, &doubts, seconds);

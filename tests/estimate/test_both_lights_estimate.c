@@ -99,7 +99,7 @@ static void photographs_environment_is_estimated_and_kept(void **state)
     for (int i = 0; i < 27; i++)
         largest = fmaxf(largest, fabsf(f->maps.environment[i / 3][i % 3]));
     assert_true(largest > 1e-3f && isfinite(largest));
-    assert_int_equal(merlin_maps_write(f->model, &f->maps, f->output), MERLIN_OK);
+    assert_int_equal(merlin_maps_write(f->model, &f->maps, NULL, f->output), MERLIN_OK);
     assert_int_equal(merlin_maps_read(f->output, &again), MERLIN_OK);
     assert_true(again.has_environment);
     assert_memory_equal(again.environment, f->maps.environment, sizeof again.environment);

@@ -191,7 +191,7 @@ static void written_maps_are_read_back(void **state)
     assert_true(maps.burnt_out == 0);
     for (int i = 0; i < WIDTH * HEIGHT; i++)
         maps.photo.data[3 * i] = maps.mask.data[i]; /* all of red, a third of the values */
-    if (merlin_maps_write(f->model, &maps, f->output) != MERLIN_OK) fail_msg("%s", merlin_error());
+    if (merlin_maps_write(f->model, &maps, NULL, f->output) != MERLIN_OK) fail_msg("%s", merlin_error());
     if (merlin_maps_read(f->output, &again) != MERLIN_OK) fail_msg("%s", merlin_error());
     assert_int_equal(maps.crop.x, again.crop.x);
     assert_int_equal(maps.crop.side, again.crop.side);
@@ -207,6 +207,30 @@ static void written_maps_are_read_back(void **state)
     merlin_maps_free(&again);
 }
 
+static void a_folder_of_ones_own_is_written_in_place(void **state)
+{
+    const fixture *f = *state;
+    const merlin_write_params params = {.in_place = 1, .last = 1};
+    merlin_maps maps;
+    char path[160], *text = NULL, *written = NULL;
+    size_t size = 0;
+    estimate(f, &maps);
+    snprintf(path, sizeof path, "%s/none", f->output);
+    assert_int_equal(merlin_maps_write(f->model, &maps, &params, path), MERLIN_CANNOT_WRITE);
+    assert_false(file_exists(path));
+    assert_int_equal(merlin_maps_write(f->model, &maps, &params, f->output), MERLIN_OK);
+    snprintf(path, sizeof path, "%s/report.json", f->output);
+    assert_int_equal(merlin_maps_report(&maps, &text), MERLIN_OK);
+    assert_int_equal(file_read(path, 1 << 20, &written, &size), OK);
+    assert_int_equal(strlen(text), size);
+    assert_memory_equal(text, written, size);
+    free(text);
+    free(written);
+    merlin_maps_free(&maps);
+    assert_int_equal(merlin_maps_report(&maps, &text), MERLIN_WRONG_USE);
+    assert_null(text);
+}
+
 static void a_photograph_in_any_unit_is_read_back(void **state)
 {
     fixture *f = *state;
@@ -218,7 +242,7 @@ static void a_photograph_in_any_unit_is_read_back(void **state)
         estimate(f, &maps);
         for (int i = 0; i < WIDTH * HEIGHT * 3; i++)
             f->photo.data[i] /= units[k];
-        assert_int_equal(merlin_maps_write(f->model, &maps, f->output), MERLIN_OK);
+        assert_int_equal(merlin_maps_write(f->model, &maps, NULL, f->output), MERLIN_OK);
         if (merlin_maps_read(f->output, &again) != MERLIN_OK) fail_msg("%s", merlin_error());
         for (int i = 0; i < WIDTH * HEIGHT * 3; i++)
             assert_float_equal(maps.photo.data[i], again.photo.data[i], 1e-3f * maps.photo.data[i]);
@@ -236,7 +260,7 @@ static void maps_of_the_farthest_exposures_are_read_back(void **state)
         p.auto_exposure = 0;
         p.exposure = 20.0f * (float)sign;
         assert_int_equal(merlin_estimate(f->model, &f->photo, &f->mask, &p, &maps), MERLIN_OK);
-        assert_int_equal(merlin_maps_write(f->model, &maps, f->output), MERLIN_OK);
+        assert_int_equal(merlin_maps_write(f->model, &maps, NULL, f->output), MERLIN_OK);
         if (merlin_maps_read(f->output, &again) != MERLIN_OK) fail_msg("%s", merlin_error());
         assert_true(maps.gain == again.gain);
         merlin_maps_free(&maps);
@@ -252,7 +276,7 @@ static void a_folder_has_every_file_and_no_other(void **state)
     const fixture *f = *state;
     merlin_maps maps;
     estimate(f, &maps);
-    assert_int_equal(merlin_maps_write(f->model, &maps, f->output), MERLIN_OK);
+    assert_int_equal(merlin_maps_write(f->model, &maps, NULL, f->output), MERLIN_OK);
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         char path[160];
         snprintf(path, sizeof path, "%s/%s", f->output, names[i]);
@@ -377,6 +401,7 @@ int main(void)
         cmocka_unit_test(darker_photographs_are_brightened_to_the_same_maps),
         cmocka_unit_test(photographs_in_another_unit_are_exposed_for_it),
         cmocka_unit_test(written_maps_are_read_back),
+        cmocka_unit_test(a_folder_of_ones_own_is_written_in_place),
         cmocka_unit_test(a_photograph_in_any_unit_is_read_back),
         cmocka_unit_test(maps_of_the_farthest_exposures_are_read_back),
         cmocka_unit_test(a_folder_has_every_file_and_no_other),

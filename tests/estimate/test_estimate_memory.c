@@ -155,7 +155,7 @@ static const char *check_maps(void *context, int result)
 static int write_maps(void *context)
 {
     const work *w = context;
-    return merlin_maps_write(w->model, &w->maps, w->written);
+    return merlin_maps_write(w->model, &w->maps, NULL, w->written);
 }
 
 static const char *check_folder(void *context, int result)
@@ -328,7 +328,7 @@ static int set_up(void **state)
     if (s == OK) s = merlin_model_add_flash(w.model, w.point);
     if (s == OK) s = merlin_estimate(w.model, &w.photo, &w.mask, &w.params, &w.maps);
     w.maps.timing = (merlin_timing){0}; /* stands in the report */
-    if (s == OK) s = merlin_maps_write(w.model, &w.maps, w.folder);
+    if (s == OK) s = merlin_maps_write(w.model, &w.maps, NULL, w.folder);
     return s == OK ? 0 : -1;
 }
 

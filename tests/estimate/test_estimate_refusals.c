@@ -148,7 +148,7 @@ static void empty_maps_are_neither_relit_nor_written(void **state)
     merlin_maps maps = {0};
     merlin_image image;
     assert_int_equal(merlin_relight(f->model, &maps, light, MERLIN_BY_BRDF, &image), MERLIN_WRONG_USE);
-    assert_int_equal(merlin_maps_write(f->model, &maps, f->output), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_maps_write(f->model, &maps, NULL, f->output), MERLIN_WRONG_USE);
     assert_false(file_exists(f->output));
 }
 
@@ -171,7 +171,7 @@ static void maps_of_impossible_frames_are_refused(void **state)
     bad[6].reconstruction.height *= 100;
     for (int i = 0; i < BAD; i++) {
         assert_int_equal(merlin_relight(f->model, &bad[i], light, MERLIN_BY_BRDF, &image), MERLIN_WRONG_USE);
-        assert_int_equal(merlin_maps_write(f->model, &bad[i], f->output), MERLIN_WRONG_USE);
+        assert_int_equal(merlin_maps_write(f->model, &bad[i], NULL, f->output), MERLIN_WRONG_USE);
         assert_non_null(strstr(merlin_error(), "empty or incomplete"));
     }
     assert_false(file_exists(f->output));
@@ -193,7 +193,7 @@ static void null_pointers_are_refused_and_freed(void **state)
     assert_int_equal(merlin_image_write(NULL, &f->photo), MERLIN_WRONG_USE);
     assert_int_equal(merlin_image_write(f->output, &image), MERLIN_WRONG_USE); /* no pixels */
     assert_int_equal(merlin_estimate(f->model, NULL, NULL, NULL, &maps), MERLIN_WRONG_USE);
-    assert_int_equal(merlin_maps_write(f->model, NULL, f->output), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_maps_write(f->model, NULL, NULL, f->output), MERLIN_WRONG_USE);
     assert_int_equal(merlin_maps_read(NULL, &maps), MERLIN_WRONG_USE);
     assert_int_equal(merlin_relight(f->model, &maps, NULL, MERLIN_BY_BRDF, &image), MERLIN_WRONG_USE);
     assert_int_equal(merlin_environment_read(NULL, 0, 0, &room), MERLIN_WRONG_USE);
@@ -244,17 +244,17 @@ static void an_output_that_cannot_be_written_leaves_nothing(void **state)
     char inside[160];
     merlin_maps maps;
     estimate(f, &maps);
-    assert_int_equal(merlin_maps_write(f->model, &maps, "/proc/merlin"), MERLIN_CANNOT_WRITE);
+    assert_int_equal(merlin_maps_write(f->model, &maps, NULL, "/proc/merlin"), MERLIN_CANNOT_WRITE);
     snprintf(inside, sizeof inside, "%s/mask.png", f->output);
     assert_int_equal(file_make_folder(inside), OK); /* a folder where a file should go */
-    assert_int_equal(merlin_maps_write(f->model, &maps, f->output), MERLIN_CANNOT_WRITE);
+    assert_int_equal(merlin_maps_write(f->model, &maps, NULL, f->output), MERLIN_CANNOT_WRITE);
     assert_non_null(strstr(merlin_error(), "mask.png"));
     assert_int_equal(rmdir(inside), 0);
     assert_int_equal(rmdir(f->output), 0);
     char deep[PATH_MAX - 100];
     for (size_t i = (size_t)snprintf(deep, sizeof deep, "%s", f->output); i < sizeof deep; i++)
         deep[i] = i == sizeof deep - 1 ? 0 : i % 200 ? 'x' : '/';
-    assert_int_equal(merlin_maps_write(f->model, &maps, deep), MERLIN_CANNOT_WRITE);
+    assert_int_equal(merlin_maps_write(f->model, &maps, NULL, deep), MERLIN_CANNOT_WRITE);
     assert_non_null(strstr(merlin_error(), "too long"));
     assert_false(file_exists(f->output));
     merlin_maps_free(&maps);

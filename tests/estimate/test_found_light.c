@@ -5,7 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "estimate/light/light_words.h"
 #include "optics/camera.h"
 #include "optics/sh.h"
 
@@ -163,24 +162,24 @@ static void a_light_turned_by_steps_stands_as_one_turned_at_once(void **state)
 static void light_has_words(void **state)
 {
     (void)state;
-    char words[LIGHT_WORDS];
+    char words[MERLIN_LIGHT_WORDS];
     merlin_found_light light = lamp_from(40, 135, 1, 0);
-    light_words(&light, words);
+    merlin_light_words(&light, words, sizeof words);
     assert_string_equal(words, "a lamp from the upper left, 40 degrees aside");
     light = lamp_from(100, -90, 1, 1);
-    light_words(&light, words);
+    merlin_light_words(&light, words, sizeof words);
     assert_string_equal(words, "a flash and a lamp from below, 100 degrees aside");
     light = lamp_from(60, 10, 1, 0.1f);
     light.rest[0][0] = light.rest[0][1] = light.rest[0][2] = 3;
-    light_words(&light, words);
+    merlin_light_words(&light, words, sizeof words);
     assert_string_equal(words, "a lamp from the right, 60 degrees aside, in a room");
     light = lamp_from(2, 10, 1, 0);
-    light_words(&light, words);
+    merlin_light_words(&light, words, sizeof words);
     assert_string_equal(words, "a lamp by the lens");
     light = (merlin_found_light){.known = 1, .rest = {{1, 1, 1}}};
-    light_words(&light, words);
+    merlin_light_words(&light, words, sizeof words);
     assert_string_equal(words, "a room's light");
-    light_words(&(merlin_found_light){0}, words);
+    merlin_light_words(&(merlin_found_light){0}, words, sizeof words);
     assert_string_equal(words, "");
 }
 

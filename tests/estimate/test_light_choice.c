@@ -246,7 +246,7 @@ static void found_light_is_kept_and_turns(void **state)
     see(f, code);
     merlin_maps maps = maps_of(f, &model);
     snprintf(folder, sizeof folder, "%s/maps", f->folder);
-    assert_int_equal(merlin_maps_write(model, &maps, folder), MERLIN_OK);
+    assert_int_equal(merlin_maps_write(model, &maps, NULL, folder), MERLIN_OK);
     assert_int_equal(merlin_maps_read(folder, &kept), MERLIN_OK);
     assert_memory_equal(&kept.light, &maps.light, sizeof kept.light);
     assert_int_equal(merlin_relight_found(model, &maps, 0, MERLIN_BY_BRDF, &before), MERLIN_OK);

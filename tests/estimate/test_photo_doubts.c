@@ -129,8 +129,8 @@ static void every_doubt_has_a_code_and_words(void **state)
     }
     assert_string_equal(merlin_doubt_code((merlin_doubt)0), "");
     maps.doubts = MERLIN_DOUBT_GREY | MERLIN_DOUBT_LIGHT_ELSEWHERE;
-    warnings list = {0};
-    doubts_list(&maps, &list);
+    merlin_warnings list;
+    merlin_maps_warnings(&maps, &list);
     assert_int_equal(list.count, 2);
     assert_string_equal(list.at[0].code, "light_elsewhere"); /* the graver first */
     merlin_maps_free(&maps);

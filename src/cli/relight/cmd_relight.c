@@ -24,7 +24,6 @@
 #include "command/photo_hint.h"
 #include "command/photos.h"
 #include "command/standard_input.h"
-#include "estimate/photo/photo_doubts.h"
 #include "estimate/relight/relighter.h"
 
 static const char help[] =
@@ -344,7 +343,7 @@ static void doubt_darkness(const relight_result *result, warnings *doubts)
 /* Lists the doubts of the photograph first, if the maps are made of one now. */
 static void find_doubts(const relight_job *job, const relight_result *result, warnings *doubts)
 {
-    doubts_list(job->maps, doubts);
+    merlin_maps_warnings(job->maps, doubts);
     for (size_t i = 0; i < job->lamps.noticed.count; i++)
         warnings_add(doubts, job->lamps.noticed.at[i].code, "%s", job->lamps.noticed.at[i].message);
     doubt_environment(job->environment, doubts);
@@ -364,7 +363,7 @@ static void find_doubts(const relight_job *job, const relight_result *result, wa
 
 static status print_json(const request *r, const relight_job *job, const relight_result *result, double seconds)
 {
-    warnings doubts = {0};
+    warnings doubts;
     find_doubts(job, result, &doubts);
     cJSON *report = report_begin(&doubts);
     json_put_text(report, "input", standard_input_is(r->input) ? "-" : r->input);
@@ -384,7 +383,7 @@ static status print_json(const request *r, const relight_job *job, const relight
 
 static status announce(const request *r, const relight_job *job, const relight_result *result, double seconds)
 {
-    warnings doubts = {0};
+    warnings doubts;
     find_doubts(job, result, &doubts);
     if (!r->quiet) warnings_print(&doubts, "relight", standard_input_name(r->input), WARNINGS_MOST);
     if (r->json) return print_json(r, job, result, seconds);

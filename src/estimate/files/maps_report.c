@@ -3,12 +3,12 @@
 #include <cJSON.h>
 #include <math.h>
 
+#include "base/api_needs.h"
 #include "base/json/json_put.h"
 #include "base/text/report.h"
 #include "estimate/files/maps_files.h"
 #include "estimate/light/found_light.h"
-#include "estimate/light/light_words.h"
-#include "estimate/photo/photo_doubts.h"
+#include "estimate/relight/maps_surface.h"
 #include "estimate/surface/exposure.h"
 
 typedef struct range {
@@ -120,11 +120,11 @@ static void put_numbers(cJSON *to, const char *name, const float *values, int co
 /* What a model of any light sees. */
 static void put_light(cJSON *root, const merlin_found_light *l)
 {
-    char words[LIGHT_WORDS];
+    char words[MERLIN_LIGHT_WORDS];
     if (!l->known) return;
     cJSON *light = json_put_object(root, "light");
     const found_light_shares share = found_light_share(l);
-    light_words(l, words);
+    merlin_light_words(l, words, sizeof words);
     json_put_text(light, "words", words);
     put_numbers(light, "shares", (const float[]){share.flash, share.lamp, share.rest}, 3);
     json_put_number(light, "flash", (double)l->flash);
@@ -144,10 +144,10 @@ static bool is_scale_known(const merlin_maps *maps)
     return !maps->light.known || found_light_share(&maps->light).flash >= 0.5f;
 }
 
-char *maps_report(const merlin_maps *maps)
+static char *compose(const merlin_maps *maps)
 {
-    warnings doubts = {0};
-    doubts_list(maps, &doubts);
+    warnings doubts;
+    merlin_maps_warnings(maps, &doubts);
     cJSON *root = report_begin(&doubts);
     json_put_text(root, "model", maps->model);
     json_put_number(root, "width", maps->albedo.width);
@@ -172,4 +172,14 @@ char *maps_report(const merlin_maps *maps)
     char *text = json_print(root);
     cJSON_Delete(root);
     return text;
+}
+
+merlin_status merlin_maps_report(const merlin_maps *maps, char **text)
+{
+    if (text) *text = NULL;
+    status s = api_needs(__func__, maps && text);
+    if (s == OK) s = maps_check(maps);
+    if (s != OK) return s;
+    *text = compose(maps);
+    return *text ? OK : fail(MERLIN_NO_MEMORY, "no memory for a report");
 }

@@ -3,12 +3,15 @@
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/api_needs.h"
 #include "base/file.h"
 #include "base/parallel.h"
+#include "base/staging.h"
+#include "base/watch.h"
 #include "estimate/files/map_png.h"
 #include "estimate/files/maps_files.h"
 #include "estimate/files/overview.h"
@@ -70,9 +73,9 @@ static status write_depth(const job *j, const char *path)
 
 static status write_report(const job *j, const char *path)
 {
-    char *text = maps_report(j->maps);
-    if (!text) return fail(MERLIN_NO_MEMORY, "no memory for a report");
-    status s = file_write(path, text, strlen(text));
+    char *text = NULL;
+    status s = merlin_maps_report(j->maps, &text);
+    if (s == OK) s = file_write(path, text, strlen(text));
     free(text);
     return s;
 }
@@ -107,68 +110,67 @@ typedef struct batch {
     job job;
     pthread_t owner; /* the thread that tells */
     atomic_int done;
-    staging *staging;
-    const maps_output *output;
+    staging *staging; /* NULL: into `folder` itself */
+    const char *folder;
+    watch watch;
 } batch;
 
-static bool stopped(const batch *b)
+static const char *path_of(const batch *b, const char *name, char path[PATH_MAX])
 {
-    return b->output->stop && b->output->stop();
+    if (b->staging) return staging_path(b->staging, name, path);
+    snprintf(path, PATH_MAX, "%s/%s", b->folder, name);
+    return path;
 }
 
 static status write_one(void *context, size_t i)
 {
     batch *b = context;
     char path[PATH_MAX];
-    if (stopped(b)) return fail(MERLIN_STOPPED, "stopped");
-    status s = outputs[i].write(&b->job, staging_path(b->staging, outputs[i].name, path));
+    if (watch_stops(&b->watch)) return fail(MERLIN_STOPPED, "stopped");
+    status s = outputs[i].write(&b->job, path_of(b, outputs[i].name, path));
     int done = atomic_fetch_add(&b->done, 1) + 1;
-    if (pthread_equal(b->owner, pthread_self())) watch_tell(b->output->watch, "writing", (double)done / (OUTPUTS + 1));
+    if (pthread_equal(b->owner, pthread_self())) watch_tell(&b->watch, "writing", (double)done / (OUTPUTS + 1));
     return s;
 }
 
-/* A mesh is no part of merlin_maps_write, but of the same all or none. */
-static status write_more(const batch *b, maps_staging *all)
+static status write_all(batch *b, bool in_place)
 {
-    return b->output->more ? b->output->more(b->output->context, b->job.maps, all) : OK;
-}
-
-static status write_through(batch *b)
-{
-    const maps_output *o = b->output;
-    maps_staging all = {.count = 1};
-    status s = staging_begin(o->folder, o->inputs, &all.at[0]);
+    const size_t length = strlen(b->folder);
+    status s = !in_place ? staging_begin(b->folder, NULL, &b->staging)
+               : length + 1 + NAME_MAX < PATH_MAX
+                   ? OK
+                   : fail(MERLIN_CANNOT_WRITE, "a path of %zu bytes is too long", length);
     if (s != OK) return s;
-    b->staging = all.at[0];
     s = parallel_try(OUTPUTS, write_one, b);
-    if (s == OK) s = write_more(b, &all);
-    if (s == OK && stopped(b)) s = fail(MERLIN_STOPPED, "stopped");
-    if (s == OK) return staging_commit_all(all.at, all.count, o->written);
-    while (all.count > 0)
-        s = staging_abort(all.at[--all.count], s);
-    return s;
+    if (s == OK && watch_stops(&b->watch)) s = fail(MERLIN_STOPPED, "stopped");
+    if (in_place) return s;
+    return s == OK ? staging_commit(b->staging, NULL) : staging_abort(b->staging, s);
 }
 
-status maps_write(merlin_model *model, const merlin_maps *maps, const maps_output *to)
+static status write_maps(merlin_model *model, const merlin_maps *maps, const merlin_write_params *by,
+                         const char *folder)
 {
     batch *b = calloc(1, sizeof *b);
-    if (!b) return fail(MERLIN_NO_MEMORY, "no memory to write %s", to->folder);
+    if (!b) return fail(MERLIN_NO_MEMORY, "no memory to write %s", folder);
     b->job.maps = maps;
-    b->output = to;
+    b->folder = folder;
     b->owner = pthread_self();
-    watch_tell(to->watch, "writing", 0);
+    b->watch = (watch){by->progress, by->progress_context, by->stop};
+    watch_tell(&b->watch, "writing", 0);
     /* before the files are written side by side, because the network uses every processor itself */
     network *n = model_network(model, maps, MERLIN_BY_BRDF);
     status s = overview_new(n, maps, &b->job.overview);
-    if (to->last) network_release(n);
-    if (s == OK) s = write_through(b);
+    if (by->last) network_release(n);
+    if (s == OK) s = write_all(b, by->in_place);
     overview_free(&b->job.overview);
     free(b);
     return s;
 }
 
-merlin_status merlin_maps_write(merlin_model *model, const merlin_maps *maps, const char *folder)
+merlin_status merlin_maps_write(merlin_model *model, const merlin_maps *maps, const merlin_write_params *params,
+                                const char *folder)
 {
+    const merlin_write_params usual = {.in_place = 0};
     status s = api_needs(__func__, model && maps && folder);
-    return s == OK ? maps_write(model, maps, &(maps_output){.folder = folder}) : s;
+    return s == OK ? write_maps(model, maps, params ? params : &usual, folder) : s;
 }

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "estimate/light/light_words.h"
-
+/* The light that a photograph is lit by, in words for a person. */
 #include <math.h>
 #include <stdio.h>
 
@@ -24,14 +23,15 @@ static void lamp_words(const merlin_found_light *light, char words[LAMP_WORDS])
                  upright ? vertical : "", sideways ? right > 0 ? "right" : "left" : "", degrees);
 }
 
-void light_words(const merlin_found_light *light, char words[LIGHT_WORDS])
+int merlin_light_words(const merlin_found_light *light, char *text, int size)
 {
     const found_light_shares share = found_light_share(light);
     char of_lamp[LAMP_WORDS] = "";
     const bool flash = share.flash >= NAMED, beam = share.lamp >= NAMED, rest = share.rest >= NAMED;
     if (beam) lamp_words(light, of_lamp);
-    snprintf(words, LIGHT_WORDS, "%s%s%s%s", flash ? "a flash" : "", flash && beam ? " and " : "", of_lamp,
-             !rest           ? ""
-             : flash || beam ? ", in a room"
-                             : "a room's light");
+    return snprintf(text, size > 0 ? (size_t)size : 0, "%s%s%s%s", flash ? "a flash" : "", flash && beam ? " and " : "",
+                    of_lamp,
+                    !rest           ? ""
+                    : flash || beam ? ", in a room"
+                                    : "a room's light");
 }

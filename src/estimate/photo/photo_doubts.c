@@ -8,7 +8,6 @@
 #include "base/api_needs.h"
 #include "base/status.h"
 #include "estimate/light/found_light.h"
-#include "estimate/light/light_words.h"
 #include "estimate/object/mask.h"
 #include "estimate/surface/exposure.h"
 #include "image/color.h"
@@ -209,13 +208,13 @@ static int mask_words(const merlin_maps *maps, char *text, size_t size)
 
 static int light_sentence(const merlin_maps *maps, char *text, size_t size)
 {
-    char words[LIGHT_WORDS];
+    char words[MERLIN_LIGHT_WORDS];
     if (!maps->light.known)
         return snprintf(
             text, size,
             "it does not look lit by a flash at the lens, the one light the model knows, and its maps may be "
             "quite wrong: photograph it in the dark by the flash");
-    light_words(&maps->light, words);
+    merlin_light_words(&maps->light, words, sizeof words);
     return snprintf(
         text, size,
         "it is lit by %s, as far as the model can tell: shape and material are surer by a flash in the dark, "
@@ -318,6 +317,12 @@ void doubts_list(const merlin_maps *maps, warnings *list)
         merlin_doubt_message(maps, names[i].doubt, message, sizeof message);
         warnings_add(list, names[i].code, "%s", message);
     }
+}
+
+void merlin_maps_warnings(const merlin_maps *maps, merlin_warnings *out)
+{
+    if (out) *out = (merlin_warnings){0};
+    if (maps && out) doubts_list(maps, out);
 }
 
 merlin_status merlin_shot_read(const char *path, merlin_shot *out)

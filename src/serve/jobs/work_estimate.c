@@ -42,7 +42,7 @@ static status run(const work_context *w, const void *request)
     if (s != OK) return s;
     name_of(w->form, name);
     w->progress(w->progress_context, "writing", 0);
-    s = merlin_maps_write(w->model, &maps, store_path(w->store, w->form->id, STORE_OUT, NULL, folder));
+    s = merlin_maps_write(w->model, &maps, NULL, store_path(w->store, w->form->id, STORE_OUT, NULL, folder));
     if (s == OK && w->stop()) s = fail(MERLIN_STOPPED, "stopped");
     const merlin_view_params view = {.name = name};
     if (s == OK && r->view)
