@@ -18,12 +18,12 @@ static status no_memory(void)
 
 /* ---- the background's part of the border ---- */
 
-/* The ring's pixels, side after side, the colours of neighbours in a row of numbers. */
+/* Pixels of the ring, side after side, with the colours of neighbours next to one another. */
 typedef struct border {
     size_t first[SIDES + 1];
     size_t *pixel;
     float *r, *g, *b;
-    uint8_t *seed; /* of every pixel of the picture; borrowed */
+    uint8_t *seed; /* seeds, a value for every pixel of the picture; borrowed */
 } border;
 
 static status border_new(size_t ring, border *out)
@@ -42,7 +42,7 @@ static void border_free(border *b)
     free(b->pixel);
 }
 
-/* Of the picture's four sides, the nearest. */
+/* Returns the nearest of the picture's four sides. */
 static int side_of(const img *color, size_t i)
 {
     int x = (int)(i % (size_t)color->width), y = (int)(i / (size_t)color->width);
@@ -68,7 +68,7 @@ static void list_border(const img *color, const uint8_t *ring, border *out)
     }
 }
 
-/* The least squared distance of entry i's colour to one of begin .. end - 1. */
+/* Returns the least squared distance of entry i's colour to one of begin .. end - 1. */
 static float nearest_color(const border *b, size_t i, size_t begin, size_t end)
 {
     const float *red = b->r, *green = b->g, *blue = b->b;
@@ -82,7 +82,7 @@ static float nearest_color(const border *b, size_t i, size_t begin, size_t end)
     return nearest;
 }
 
-/* Whether border pixels have a like colour on another side. */
+/* Finds out which border pixels have a similar colour on another side. */
 static void find_likes(void *context, size_t begin, size_t end)
 {
     const border *b = context;
@@ -96,7 +96,7 @@ static void find_likes(void *context, size_t begin, size_t end)
     }
 }
 
-/* Where hardly any of the border is like another side, all of it counts. */
+/* Chooses the background's part of the border; if hardly any of it resembles another side, all of it. */
 static status choose_seeds(const img *color, const uint8_t *ring, uint8_t *seed)
 {
     border b;
@@ -119,9 +119,9 @@ static status choose_seeds(const img *color, const uint8_t *ring, uint8_t *seed)
 
 /* ---- the way there ---- */
 
-/* One channel's barrier, found by a few raster scans (Zhang et al. 2015). */
+/* State of one channel's barrier distance, found by a few raster scans (Zhang et al. 2015). */
 typedef struct barrier {
-    const float *value; /* every third */
+    const float *value; /* channel values, three floats apart */
     float *cost, *high, *low;
     int width, height;
 } barrier;

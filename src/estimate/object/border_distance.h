@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* How unlike a picture's border its pixels are: how far colours must change on the way there.
+/* Difference of pixels from a picture's border: how much colours must change on the way there.
  *
- *     img away;                                  colours and ring of one size
+ *     img away;                                  same size as the colours and the ring
  *     status s = border_distance(&color, ring, &away);
  *
- * The least difference between highest and lowest value of any path to the background's part of the border, in each
- * channel (minimum barrier distance, Strand et al. 2013): shading that ends where it began costs nothing, an outline
- * costs its whole step however it is reached. */
+ * It is the least difference between the highest and lowest value along any path to the background's part of the
+ * border, in each channel (minimum barrier distance, Strand et al. 2013): shading that returns to its first value costs
+ * nothing, an outline costs its full contrast however it is reached. */
 #ifndef MERLIN_ESTIMATE_OBJECT_BORDER_DISTANCE_H
 #define MERLIN_ESTIMATE_OBJECT_BORDER_DISTANCE_H
 
@@ -14,12 +14,12 @@
 
 #include "image/image.h"
 
-/* color: 3 channels in [0, 1]. ring: 1 for pixels of the border, else 0; there must be some. out, made here: 1 channel
- * in [0, 3], the channels' sum. Border pixels are background if their colour is there on another side, too: an object
- * that the picture cuts off at one side is none. */
+/* Computes the distance. color: 3 channels in [0, 1]. ring: 1 for pixels of the border, else 0; there must be some.
+ * out, made here: 1 channel in [0, 3], the sum over the channels. A border pixel is background only if its colour also
+ * occurs on another side of the border, so that an object which one side of the picture cuts off is not. */
 status border_distance(const img *color, const uint8_t *ring, img *out);
 
-/* The same from pixels that are 1 in seed, whatever their colours. */
+/* Computes the distance from all pixels that are 1 in seed, whatever their colours. */
 status barrier_distance(const img *color, const uint8_t *seed, img *out);
 
 #endif

@@ -7,14 +7,14 @@
 #include "base/number.h"
 
 enum { FEW = 16, FEWEST = 4, ROUNDS = 2, COLORS = 3, BLOCK = 256, STEP = 2 };
-/* Least variance, so that one flat colour is no needle: the noise of a dark photograph. */
+/* Least variance, the noise of a dark photograph, so that a uniform colour does not give a degenerate Gaussian. */
 static const double LEAST_VARIANCE = 2e-4;
-/* Farther away, in standard deviations, all is alike unlike. */
+/* Largest distance in standard deviations; beyond it all colours are equally unlikely. */
 static const float FARTHEST = 6;
-/* Encoded by a square root, three times the light. */
+/* Largest brightening: three times the light, encoded by a square root. */
 static const float MOST_SHADOW = 1.75f;
 
-/* Sums over some pixels. */
+/* Sums over pixels. */
 typedef struct moments {
     double count, sum[MIXTURE_VALUES], product[MIXTURE_VALUES][MIXTURE_VALUES];
 } moments;
@@ -32,7 +32,7 @@ static void moments_add(moments *m, const mixture_pixels *p, size_t i)
 
 /* ---- one Gaussian ---- */
 
-/* The lower triangle L with L Lᵀ = c; returns log det L. */
+/* Computes the lower triangle L with L Lᵀ = c; returns log det L. */
 static double factor(const double c[MIXTURE_VALUES][MIXTURE_VALUES], double l[MIXTURE_VALUES][MIXTURE_VALUES])
 {
     double log_det = 0;
@@ -74,7 +74,7 @@ static void gaussian_fit(gaussian *g, const moments *m, double all)
     invert((const double(*)[MIXTURE_VALUES])l, g->inverse);
 }
 
-/* Of a pixel, as it is and brightened as much as is best: squared distances in standard deviations. */
+/* Computes a pixel's squared distances in standard deviations, with its own colour and with the best brightening. */
 static inline void distances(const gaussian *g, const mixture_pixels *p, size_t i, float *as_is, float *brightened)
 {
     float uu = 0, uv = 0, vv = 0;
@@ -103,7 +103,7 @@ static float gaussian_cost(const gaussian *g, const mixture_pixels *p, size_t i)
 
 /* ---- learning ---- */
 
-/* Of a part's pixels, which value differs most, and how much in all. */
+/* Returns the total variance of a part's pixels, and which value varies most. */
 static double widest_value(const moments *m, int *along)
 {
     double most = -1;
@@ -116,7 +116,7 @@ static double widest_value(const moments *m, int *along)
     return m->count < FEW ? -1 : most;
 }
 
-/* A part is split where one of its values is above its mean. */
+/* A split of a part into pixels with one value above and below its mean. */
 typedef struct split {
     int of, along;
     float at;
@@ -135,7 +135,7 @@ static void sum_parts(const mixture_pixels *p, const uint8_t *part, uint8_t whic
     }
 }
 
-/* Splits the part that is described worst, again and again; returns how many there are. */
+/* Repeatedly splits the part with the largest total variance; returns the number of parts. */
 static int split_parts(const mixture_pixels *p, const uint8_t *part, uint8_t which, moments out[MIXTURE_MOST])
 {
     split splits[MIXTURE_MOST];

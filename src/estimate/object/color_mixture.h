@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What colours a part of a picture has, and where: a mixture of Gaussians over colour and place, so that a colour
- * counts most beside others of its kind.
+/* The colours of a part of a picture, and where they occur: a mixture of Gaussians over colour and place, so that a
+ * colour counts most near other pixels of its kind.
  *
  *     mixture m;
  *     mixture_learn(&m, &pixels, part, 1);               from the pixels whose part[i] is 1
@@ -14,7 +14,7 @@
 
 enum { MIXTURE_VALUES = 5, MIXTURE_MOST = 8 };
 
-/* Red, green, blue, x and y of pixels, each of them one array. */
+/* Red, green, blue, x and y of pixels, an array each. */
 typedef struct mixture_pixels {
     float *value[MIXTURE_VALUES];
     size_t count;
@@ -22,7 +22,7 @@ typedef struct mixture_pixels {
 
 typedef struct gaussian {
     float mean[MIXTURE_VALUES];
-    float inverse[MIXTURE_VALUES][MIXTURE_VALUES]; /* of the covariance's Cholesky factor: lower triangle */
+    float inverse[MIXTURE_VALUES][MIXTURE_VALUES]; /* inverse of the covariance's Cholesky factor: lower triangle */
     float offset;                                  /* log(sqrt(det) / weight) */
 } gaussian;
 
@@ -31,10 +31,10 @@ typedef struct mixture {
     int count;
 } mixture;
 
-/* A mixture of no pixel costs 0 everywhere. */
+/* Fits the mixture to the pixels of a part. A mixture of no pixels costs 0 everywhere. */
 void mixture_learn(mixture *m, const mixture_pixels *pixels, const uint8_t *part, uint8_t which);
-/* -log of the density, but for a constant. Colours may also be brightened, up to three times in light, for so much more
- * (INFINITY: not at all): what lies in a shadow is what it was. */
+/* Computes -log of the density, up to a constant. For an additional cost of `shadow` (INFINITY: never) a colour may be
+ * brightened, up to three times in light, as a shadow does not change the material. */
 void mixture_costs(const mixture *m, const mixture_pixels *pixels, float shadow, float *cost);
 
 #endif

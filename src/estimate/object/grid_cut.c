@@ -5,18 +5,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Links of a pixel to its tree: a direction, or one of these. */
+/* Link of a pixel to its tree: a direction, or one of these. */
 enum { AT_TERMINAL = GRID_DIRECTIONS, NO_PARENT, ORPHAN };
 enum { NO_TREE, SOURCE, SINK };
 #define NONE UINT32_MAX
 
-/* Work on a frame of pixels that are nobody's, one wide, so that every pixel of the picture has eight neighbours. */
+/* Work on the grid with a border of unused pixels, one wide, so that every pixel of the picture has eight neighbours.
+ */
 typedef struct cut {
-    int32_t *rest;                 /* of terminal links: above 0 to the source, below to the sink */
-    int32_t *tie[GRID_DIRECTIONS]; /* what they can still carry */
+    int32_t *rest;                 /* residual capacity of terminal links: above 0 to the source, below to the sink */
+    int32_t *tie[GRID_DIRECTIONS]; /* residual capacity of ties */
     uint8_t *tree, *parent;
-    uint32_t *stamp, *distance; /* to the terminal, known at that time */
-    uint32_t *queue;            /* linked list of pixels that may grow; NONE: not in it */
+    uint32_t *stamp, *distance; /* distance to the terminal, and the time at which it was determined */
+    uint32_t *queue;            /* linked list of active pixels; NONE: not in it */
     uint32_t *orphans;
     uint32_t first, last, orphan_count, orphan_room, time;
     ptrdiff_t step[GRID_DIRECTIONS];
@@ -46,7 +47,7 @@ void grid_cut_free(grid_cut *g)
 
 /* ---- the work's memory ---- */
 
-/* One memory for all of a grid's cuts: new pages cost as much as a small cut does. */
+/* Allocates one block of memory for all cuts of a grid, as new pages cost as much as a small cut. */
 static status cut_new(grid_cut *g, cut *c)
 {
     size_t count = ((size_t)g->width + 2) * ((size_t)g->height + 2);
@@ -80,7 +81,7 @@ static uint32_t neighbour(const cut *c, uint32_t at, int direction)
 
 /* ---- pixels that may grow, first in, first out ---- */
 
-/* The last one points at itself. */
+/* Appends a pixel to the queue; the last one points to itself. */
 static void make_active(cut *c, uint32_t at)
 {
     if (c->queue[at] != NONE) return;
@@ -121,7 +122,7 @@ static status make_orphan(cut *c, uint32_t at)
 
 /* ---- the graph ---- */
 
-/* Ties to pixels that are not free become links to the terminal of their side. */
+/* Sets the ties; those to pixels that are not free become links to the terminal of their side. */
 static void tie_pixels(const grid_cut *g, const uint8_t *object, cut *c)
 {
     for (int d = 0; d < GRID_DIRECTIONS; d += 2) {
@@ -160,14 +161,15 @@ static void plant_trees(const grid_cut *g, const uint8_t *object, cut *c)
 
 /* ---- growth ---- */
 
-/* What the tie between a pixel and its parent, or child, in a direction can carry away from the source. */
+/* Returns the residual capacity, away from the source, of the tie between a pixel and its parent or child in a
+ * direction. */
 static int32_t *tie_from(const cut *c, uint32_t at, int direction, int tree)
 {
     return tree == SOURCE ? &c->tie[direction][at] : &c->tie[direction ^ 1][neighbour(c, at, direction)];
 }
 
-/* Lets a pixel's tree take free neighbours. Returns the direction in which it meets the other tree, or
- * GRID_DIRECTIONS. */
+/* Adds free neighbours to a pixel's tree. Returns the direction in which it meets the other tree, or GRID_DIRECTIONS.
+ */
 static int grow(cut *c, uint32_t at)
 {
     const uint8_t mine = c->tree[at];
@@ -193,7 +195,7 @@ static int grow(cut *c, uint32_t at)
 
 /* ---- augmentation ---- */
 
-/* The least that the way from a pixel to its tree's terminal can carry, or `most`. */
+/* Returns the least capacity on the path from a pixel to its tree's terminal, at most `most`. */
 static int32_t room_to_terminal(const cut *c, uint32_t at, int32_t most)
 {
     const int tree = c->tree[at];
@@ -239,8 +241,8 @@ static status augment(cut *c, uint32_t at, int direction)
 
 /* ---- adoption ---- */
 
-/* Number of steps from a pixel to its terminal; UINT32_MAX if its way ends at an orphan. What is found is kept for this
- * time. */
+/* Returns the number of steps from a pixel to its terminal, or UINT32_MAX if its path ends at an orphan. The result is
+ * stored for the current time. */
 static uint32_t distance_to_terminal(cut *c, uint32_t start)
 {
     uint32_t steps = 0, known = 1, at = start;
@@ -258,7 +260,7 @@ static uint32_t distance_to_terminal(cut *c, uint32_t start)
     return steps + known;
 }
 
-/* Gives an orphan the parent that is nearest to the terminal, if there is one. */
+/* Gives an orphan the parent nearest to the terminal, if there is one. */
 static bool find_parent(cut *c, uint32_t at)
 {
     uint32_t least = UINT32_MAX;
@@ -277,7 +279,7 @@ static bool find_parent(cut *c, uint32_t at)
     return true;
 }
 
-/* Frees a pixel that has no way to its terminal any more; its children become orphans. */
+/* Frees a pixel that has no path to its terminal any more; its children become orphans. */
 static status set_free(cut *c, uint32_t at)
 {
     const uint8_t tree = c->tree[at];

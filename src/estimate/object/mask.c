@@ -25,7 +25,7 @@ static bool is_inside(const img *photo, int x, int y)
     return x >= 0 && y >= 0 && x < photo->width && y < photo->height;
 }
 
-/* Of a hint that is one. */
+/* Checks a hint that has points or a box. */
 static status check_hint(const img *photo, const img *given, const merlin_hint *hint)
 {
     if (given)

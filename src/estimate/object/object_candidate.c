@@ -10,13 +10,13 @@
 #include "estimate/object/object_regions.h"
 
 enum { ROUNDS = 3 };
-/* Log odds in whole numbers, for the cut. */
+/* Log odds in integers, for the cut. */
 static const float UNIT = OBJECT_UNIT;
-/* Most that a pixel's colour, and its place, may say. */
+/* Largest log odds by a pixel's colour, and by its place. */
 static const float MOST_BY_COLOR = 5, MOST_BY_PLACE = 2;
-/* What it costs to take a pixel for background in shadow. */
+/* Cost of classifying a pixel as background in shadow. */
 static const float SHADOW = 3;
-/* Least share of the picture that the background's colours are learned from. */
+/* Least share of the picture from which the background's colours are learned. */
 static const float LEAST_OUTSIDE = 0.03f;
 
 void object_candidate_free(object_candidate *c)
@@ -49,20 +49,20 @@ void object_toward(const object_candidate *c, const mixture_pixels *pixels, floa
 
 /* ---- growth ---- */
 
-/* Memory of one growth. */
+/* Memory of the growth of a candidate. */
 typedef struct growth {
     object_ground *ground;
     object_candidate *out;
     bool outside_hull;
     uint8_t *hull;
-    uint8_t *hole, *new_hole; /* what the object surrounds, but has the background's colours */
-    uint8_t *before;          /* the object before the last round */
+    uint8_t *hole, *new_hole; /* pixels that the object surrounds but that have the background's colours */
+    uint8_t *before;          /* object before the last round */
     float *cost;
     int32_t *toward;
 } growth;
 
-/* The background's colours are learned from outside the object's hull, so that a bite out of the object does not become
- * background by its own colours; if there is enough outside. */
+/* Learns both sides' colours; the background's from outside the object's hull if there is enough of it, so that a part
+ * missing from the object does not become background by its own colours. */
 static void learn(growth *g)
 {
     const object_view *v = g->ground->view;
@@ -89,7 +89,7 @@ static status open_holes(growth *g)
     return s;
 }
 
-/* What a pixel's place says, in the cut's whole numbers. */
+/* Returns the cost difference by a pixel's place, as an integer for the cut. */
 static int32_t by_place(const growth *g, size_t i)
 {
     float odds = g->hole[i] ? -MOST_BY_PLACE : g->ground->prior[i];
@@ -134,7 +134,7 @@ static void add_outline(const growth *g, object_cues *cues)
     }
     cues->edge = (float)(change / fmax(length, 1));
     cues->weak = (float)(weak / fmax(length, 1));
-    /* of a disc, the steps of its outline are 4/π as long as it is */
+    /* a disc's outline in steps is 4/π times its length */
     length *= 3.14159265 / 4;
     cues->compact = (float)(4 * 3.14159265 * area / fmax(length * length, 1));
 }

@@ -5,7 +5,7 @@
 #include <string.h>
 
 static const float LEAST_HOLE = 0.01f, LIKE = 0.035f, DARK = 0.2f;
-/* Pixels beyond an outline, whose own colours are mixed. */
+/* Number of pixels beyond an outline whose colours are mixed, and the states of a pixel. */
 enum { BEYOND = 2, NOT_LIKE = 0, IS_LIKE, IS_SEEN, IS_HOLE };
 
 static bool is_like(const object_view *v, size_t one, size_t other)
@@ -15,12 +15,12 @@ static bool is_like(const object_view *v, size_t one, size_t other)
     return r * r + g * g + c * c < 3 * LIKE * LIKE && b[0] + b[1] + b[2] > 3 * DARK;
 }
 
-/* Goes along a row or column and compares each pixel of the object with the last of the background before it. */
+/* Goes along a row or column and compares each pixel of the object with the last background pixel before it. */
 static void compare_along(const object_view *v, const uint8_t *object, size_t first, ptrdiff_t step, int count,
                           uint8_t *hole)
 {
     size_t last = 0;
-    int outside = 0; /* pixels of background in a row */
+    int outside = 0; /* number of successive background pixels */
     bool known = false;
     for (int k = 0; k < count; k++) {
         size_t at = (size_t)((ptrdiff_t)first + k * step);
@@ -46,7 +46,7 @@ static void compare_all(const object_view *v, const uint8_t *object, uint8_t *ho
     }
 }
 
-/* Turns the connected pixels of value `from` around start into `to`; returns how many. */
+/* Changes the connected pixels of value `from` around start to `to`; returns their number. */
 static size_t flood(const object_view *v, uint8_t *hole, size_t *stack, size_t start, uint8_t from, uint8_t to)
 {
     size_t depth = 0, sum = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* From the small picture that the search works in to the photograph, outline by outline. */
+/* Transfers an object's outline from the small picture of the search to the photograph, level by level. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -10,10 +10,10 @@
 #include "image/resize.h"
 
 enum { LARGEST_SIDE = 512, BAND = 3 };
-/* Ties of like neighbours in log odds, and how much the colours count beside them. */
+/* Ties between similar neighbours in log odds, and the weight of colours relative to them. */
 static const float TIE = 8, COLOR_WEIGHT = 0.6f;
 
-/* An object at some size. */
+/* An object's mask at one size. */
 typedef struct outline {
     int width, height;
     uint8_t *object;
@@ -24,7 +24,7 @@ static status no_memory(void)
     return fail(MERLIN_NO_MEMORY, "no memory to look for the object");
 }
 
-/* Pixels near another side are free. */
+/* Makes the pixels near the other side free. */
 static void free_band(const outline *o, int radius, grid_cut *g)
 {
     size_t w = (size_t)o->width, h = (size_t)o->height;
@@ -55,7 +55,7 @@ static status double_size(const object_view *v, outline *o)
     return OK;
 }
 
-/* Colours of the band alone. */
+/* Computes the classification by colours in the band only. */
 static status band_toward(const object_candidate *c, const object_view *v, grid_cut *g)
 {
     size_t count = 0, n = 0;
@@ -102,7 +102,7 @@ static status follow(const object_search *s, const object_candidate *c, const im
     return st;
 }
 
-/* To the photograph's size, edges where its edges are. */
+/* Enlarges the mask to the photograph's size, with edges that follow it. */
 static status enlarge(const outline *o, const img *photo, float exposure, img *mask)
 {
     img small = {0};

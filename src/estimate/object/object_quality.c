@@ -8,8 +8,8 @@
 
 static const float LARGEST_AREA = 0.9f;
 
-/* A logistic regression, fitted to the candidates of 600 composites (merlin-lab eval masks): samples 0 to 119 of seed
- * 9400. How often it is right is in docs/notes/masks.md. */
+/* Evaluates a logistic regression that was fitted to the candidates of 600 composites (merlin-lab eval masks), samples
+ * 0 to 119 of seed 9400. docs/notes/masks.md states how often it is right. */
 float object_quality(const object_cues *c)
 {
     if (c->area < OBJECT_LEAST_AREA || c->area > LARGEST_AREA) return -INFINITY;

@@ -8,10 +8,10 @@
 
 enum { BACKGROUND, OBJECT, SEEN, KEPT, HOLE, OUTSIDE, DIRECTIONS = 24 };
 static const float KEPT_SHARE = 0.1f, LEAST_HOLE = 1e-3f;
-/* Log odds from which a hole is one, in hundredths. */
+/* Log odds from which on a hole stays, in hundredths. */
 static const double HOLE_TOWARD = -100;
 
-/* Pixels to be visited, and what a region adds up to. */
+/* A region's sums, and the pixels still to be visited. */
 typedef struct region {
     const object_view *view;
     const uint8_t *wanted;
@@ -20,7 +20,7 @@ typedef struct region {
     size_t *stack;
     size_t count, wanted_count;
     double toward_sum;
-    float weight; /* pixels, those toward the picture's middle counting more */
+    float weight; /* weight in pixels; those near the picture's middle count more */
 } region;
 
 static void add_pixel(region *r, size_t at)
@@ -35,7 +35,7 @@ static void add_pixel(region *r, size_t at)
     r->count++;
 }
 
-/* Turns the connected pixels of value `from` around start into `to`. */
+/* Changes the connected pixels of value `from` around start to `to`. */
 static void flood(region *r, size_t start, uint8_t from, uint8_t to)
 {
     size_t depth = 0;

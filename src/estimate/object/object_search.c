@@ -11,12 +11,13 @@
 
 enum { WORKING_SIDE = 96, OTSU_BINS = 128, FREE = 0, BACKGROUND = 1, OBJECT = 2 };
 static const float FARTHEST = 1.5f, OTSU_SHARE = 0.35f, LEAST_BARRIER = 0.08f;
-/* Log odds against an object at the picture's border: at its top, where nobody lets an object be cut off, and sides. */
+/* Log odds against an object at the picture's border: at its top, where photographers do not cut objects off, and at
+ * its sides. */
 static const float AGAINST_TOP = 3, AGAINST_SIDES = 1.5f;
-/* Most that a place may say where a hint says more, and the log odds by which each point favours what has
- * grown from the points. */
+/* Largest log odds by place in the presence of a hint, which says more; and the bonus in log odds by which each point
+ * favours candidates grown from the points. */
 static const float MOST_BESIDE_HINT = 0.6f, BONUS_BY_POINT = 1;
-/* Ties of like neighbours, in log odds. */
+/* Ties between similar neighbours in log odds. */
 static const float TIE = 6;
 
 static status no_memory(void)
@@ -49,7 +50,7 @@ static void mark_ring(object_search *s)
             s->ring[y * w + x] = x < margin || y < margin || x >= w - margin || y >= h - margin;
 }
 
-/* What lies outside the box is background, as the border is. */
+/* Makes everything outside the box background, like the border. */
 static void heed_box(object_search *s, const img *photo, const merlin_hint *hint)
 {
     const float across = (float)s->view.width / (float)photo->width,
@@ -97,7 +98,7 @@ static status search_new(const img *photo, const merlin_hint *hint, object_searc
     return st == OK ? border_distance(&s->view.color, s->ring, &s->away) : st;
 }
 
-/* Threshold that separates two groups best (Otsu 1979), for values in [0, highest]. */
+/* Returns the threshold that separates two groups best (Otsu 1979), for values in [0, highest]. */
 static float otsu(const float *value, size_t count, float highest)
 {
     double histogram[OTSU_BINS] = {0}, total = 0, below = 0, below_sum = 0, best = -1;
@@ -154,7 +155,7 @@ static status start_bright(object_search *s)
     return OK;
 }
 
-/* An ellipse in the middle of the picture or, within a box, of that. */
+/* Starts from an ellipse in the middle of the picture or of the hint's box. */
 static void start_middle(object_search *s, const img *photo, const merlin_hint *hint)
 {
     bool boxed = hint && hint->box.width;
@@ -171,7 +172,7 @@ static void start_middle(object_search *s, const img *photo, const merlin_hint *
     }
 }
 
-/* Discs around the points, whose radius is a share of the picture's longer side. */
+/* Starts from discs around the points, whose radius is a share of the picture's longer side. */
 static void start_around(object_search *s, float share)
 {
     const int w = s->view.width, h = s->view.height, radius = (int)(share * (float)(w > h ? w : h));
@@ -199,7 +200,8 @@ static status grow(object_search *s, object_ground *ground, bool outside_hull)
     return st;
 }
 
-/* What is far from the border's colours need not be the object that is meant: candidates of the hint alone. */
+/* Grows candidates from the hint alone, as the part that differs from the border need not be the object that is meant.
+ */
 static status grow_by_hint(object_search *s, const img *photo, const merlin_hint *hint, object_ground *ground)
 {
     static const float radii[] = {0.06f, 0.12f, 0.2f};
@@ -245,7 +247,7 @@ static bool stands_out(const object_search *s)
     return (float)count >= OBJECT_LEAST_AREA * (float)s->view.count;
 }
 
-/* The more points there are, the less other guesses count. */
+/* Chooses the best candidate; the more points there are, the less other guesses count. */
 static void choose(object_search *s, const merlin_hint *hint)
 {
     const float bonus = hint ? BONUS_BY_POINT * (float)hint->point_count : 0;

@@ -9,8 +9,8 @@
 #include "image/resize.h"
 
 static const float LEAST_WHITE = 0.5f, MOST_GAIN = 64;
-/* Share of its strength that is left to a tie across the sharpest edge; the weight of a place, in parts of the
- * picture's longer side, beside that of a colour. */
+/* Share of its strength that a tie keeps across the sharpest edge; weight of a place, in units of the picture's longer
+ * side, relative to a colour. */
 static const float LEAST_TIE = 0.02f, PLACE_WEIGHT = 0.4f;
 
 static void size_of(const img *photo, int side, int *width, int *height)
@@ -82,7 +82,7 @@ static float square_between(const object_view *v, size_t i, size_t j)
     return r * r + g * g + c * c;
 }
 
-/* The mean square difference of neighbours. */
+/* Returns the mean squared difference of neighbours. */
 static float usual_square(const object_view *v)
 {
     double sum = 0;

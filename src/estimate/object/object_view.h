@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A photograph in the size and the values that the search for its object works in. */
+/* A photograph in the size and encoding in which its object is searched. */
 #ifndef MERLIN_ESTIMATE_OBJECT_OBJECT_VIEW_H
 #define MERLIN_ESTIMATE_OBJECT_OBJECT_VIEW_H
 
@@ -11,15 +11,16 @@ typedef struct object_view {
     int width, height;
     size_t count;
     img color;             /* exposed, square-root encoded, in [0, 1] */
-    mixture_pixels pixels; /* the same, and places */
+    mixture_pixels pixels; /* the same colours, with places */
 } object_view;
 
-/* side: of the longer one; at most the photograph's own. exposure: what values are multiplied by. */
+/* Makes the view. side: length of the longer side, at most the photograph's own. exposure: factor of the values. */
 status object_view_new(const img *photo, int side, float exposure, object_view *out);
 void object_view_free(object_view *v);
-/* What brings a photograph's values to the usual ones: those far above 1, and those of one without a bright pixel. */
+/* Finds the factor that brings a photograph's values to the usual range: those far above 1, or of a photograph without
+ * a bright pixel. */
 status object_view_exposure(const img *photo, int side, float *exposure);
-/* Sets a cut's ties: `strength` between like neighbours, hardly anything where colours change. */
+/* Sets a cut's ties: `strength` between similar neighbours, hardly anything where colours change. */
 void object_view_tie(const object_view *v, float strength, grid_cut *g);
 
 #endif

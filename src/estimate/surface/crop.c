@@ -60,7 +60,8 @@ bool crop_holds(const img *mask, crop_square c, int slack, float least_share)
     return b.pixels > 0 && inside && (float)(width > height ? width : height) >= least_share * (float)c.side;
 }
 
-/* One row's part that is covered and lies in both images; shift: columns from `from` to `to`. */
+/* Copies the part of a row that is covered and lies in both images; shift: difference of columns between `from` and
+ * `to`. */
 static void copy_row(const img *from, int y, const img *cover, int shift, img *to, int to_y)
 {
     img_span s = cover ? img_row_span(cover, y) : (img_span){0, from->width};

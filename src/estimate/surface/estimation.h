@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A network's answers about a photograph. */
+/* What a network estimates from a photograph. */
 #ifndef MERLIN_ESTIMATE_SURFACE_ESTIMATION_H
 #define MERLIN_ESTIMATE_SURFACE_ESTIMATION_H
 
@@ -9,11 +9,11 @@
 
 typedef struct network_estimation {
     surface maps;
-    img indirect; /* of one view: light of bounces 2 and up; zero for a model without global illumination. The mean of
-                     more views has highlights of its own: empty here, to be asked of network_indirect */
-    float environment[9][3];    /* the photograph's (optics/sh.h), by models of setting B; zero for others */
-    float lights[MODEL_LIGHTS]; /* what lit the photograph, by models of any light (model.h); zero for others */
-    img visibility;             /* by these: of the strongest lamp, 1 channel in [0, 1]; else empty */
+    img indirect; /* light of bounces 2 and up, estimated from one view; zero for a model without global illumination.
+                     Empty for several views, whose mean has other highlights: use network_indirect */
+    float environment[9][3]; /* environment of the photograph (optics/sh.h), by models of setting B; zero for others */
+    float lights[MODEL_LIGHTS]; /* lights of the photograph, by models of any light (model.h); zero for others */
+    img visibility; /* visibility of the strongest lamp, by the same models, 1 channel in [0, 1]; empty for others */
 } network_estimation;
 
 #endif

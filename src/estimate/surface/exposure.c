@@ -7,11 +7,11 @@
 #include "image/color.h"
 
 enum { BINS = 1536 };
-/* Luminance from 2^-24 to 2^24, 32 bins a stop. */
+/* Range of the histogram of luminance: 2^-24 to 2^24, with 32 bins per stop. */
 static const float LOWEST_STOP = -24.0f, BINS_PER_STOP = 32.0f;
 static const float PERCENTILE = 0.95f;
-/* The span of that percentile in the training data: its 10th percentile over samples, and what the brightest white
- * leaves of its 90th. */
+/* Range of that percentile in the training data: its 10th percentile over samples, and its 90th reduced to what the
+ * brightest white leaves of it. */
 static const float DARK_END = 0.34f, BRIGHT_END = 2.2f;
 
 static float bright_luminance(const img *color, const img *mask)
@@ -39,7 +39,7 @@ float exposure_gain(const img *color, const img *mask)
     return EXPOSURE_WHITE * fminf(fmaxf(change, 1 / most), most);
 }
 
-/* 1, with room for roundings. */
+/* Limit of values that count as 1, with room for rounding errors. */
 static const float BEYOND_WHITE = 1.01f;
 
 float exposure_white(const img *photo, float gain)
@@ -52,7 +52,7 @@ float exposure_white(const img *photo, float gain)
 
 float exposure_burnt_out(const img *color, const img *mask)
 {
-    const float limit = 0.98f; /* 253 of 255: JPEG leaves what was white a little below it */
+    const float limit = 0.98f; /* 253 of 255, as JPEG leaves white slightly darker */
     size_t burnt_out = 0, count = 0, pixels = (size_t)color->width * (size_t)color->height;
     for (size_t i = 0; i < pixels; i++) {
         if (!(mask->data[i] >= 0.999f)) continue;

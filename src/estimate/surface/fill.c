@@ -6,14 +6,14 @@
 
 #include "base/parallel.h"
 
-/* A picture, which of its pixels are valid, and both at half the size. */
+/* A picture and its valid pixels, both at one level of the pyramid. */
 typedef struct level {
     img *fine;
     const img *valid;
     img coarse, coarse_valid;
 } level;
 
-/* Half the size; each pixel is the mean of its valid children, valid if any child is. */
+/* Halves the size; each pixel is the mean of its valid children, and valid if any child is. */
 static void pull_rows(void *context, size_t begin, size_t end)
 {
     level *l = context;
@@ -41,7 +41,7 @@ static int clamp_index(int i, int count)
     return i < 0 ? 0 : i >= count ? count - 1 : i;
 }
 
-/* Bilinear value of coarse at the centre of the fine pixel. */
+/* Interpolates the coarse level bilinearly at the centre of a fine pixel. */
 static void sample(const img *coarse, int x, int y, float *out)
 {
     int x0 = (x - 1) >> 1, y0 = (y - 1) >> 1;

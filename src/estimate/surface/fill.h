@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Values for the pixels that have none, from those that do: the pull-push of Gortler et al. 1996. */
+/* Fills pixels that have no value from those that do, by the pull-push algorithm of Gortler et al. 1996. */
 #ifndef MERLIN_ESTIMATE_SURFACE_FILL_H
 #define MERLIN_ESTIMATE_SURFACE_FILL_H
 
 #include "image/image.h"
 
-/* Replaces image where mask (1 channel, same size) is below 0.5 by a smooth continuation of the rest, which stays
- * untouched. An empty mask gives zeros. */
+/* Replaces the image where mask (1 channel, same size) is below 0.5 by a smooth continuation of the rest, which is
+ * unchanged. An empty mask gives zeros. */
 status fill_outside(img *image, const img *mask);
 
 #endif

@@ -7,25 +7,26 @@
 #include "base/parallel.h"
 #include "optics/camera.h"
 
-/* ℓ and σ in pixels; σ a slope: depth steps of three pixels' size against the normals begin to count as jumps. */
+/* ℓ in pixels, and σ as a slope in pixels: where depth deviates by three pixels' size from the normals' step, it begins
+ * to count as a discontinuity. */
 static const float REACH = 20, JUMP = 3;
-/* Grazing normals say little about depth. */
+/* Least cosine to the line of sight: grazing normals hardly determine depth. */
 static const float LEAST_COSINE = 0.1f;
-/* The conjugate gradients' error is far below a pixel's size after this many steps of ℓ. */
+/* Iterations in units of ℓ, after which the conjugate gradients' error is far below a pixel's size. */
 static const int ITERATIONS = 4;
 static const double RESIDUAL = 1e-6;
 
 enum { ARRAYS = 8, STRIPS = 8 };
 
-/* The linear system, one value a pixel, rows from the top. Behind and before each array lies a row of zeros, so that
+/* The linear system, one value per pixel, rows from the top. Each array has a row of zeros before and after it, so that
  * every pixel has four neighbours. */
 typedef struct fusion {
     size_t width, count;
     float *memory;
-    float *right, *down;           /* w of the pair with the pixel to the right, below */
-    float *step_right, *step_down; /* what the normals say of that pair */
+    float *right, *down;           /* weight w of the pair with the pixel to the right, and below */
+    float *step_right, *step_down; /* step of that pair by the normals */
     float *u, *residual, *direction, *product;
-    float length, turn; /* of a step of the conjugate gradients */
+    float length, turn; /* step length of the conjugate gradients, and their update of the direction */
     double sum[STRIPS];
 } fusion;
 
@@ -49,13 +50,13 @@ static float cosine(const float *normal, vec3 ray)
     return c > LEAST_COSINE ? c : LEAST_COSINE;
 }
 
-/* ln(z_j / z_i) by the mean of both pixels' planes. */
+/* Returns ln(z_j / z_i) by the mean of both pixels' planes. */
 static float step_between(const float *n_i, const float *n_j, vec3 r_i, vec3 r_j)
 {
     return 0.5f * logf(cosine(n_i, r_i) * cosine(n_j, r_i) / (cosine(n_i, r_j) * cosine(n_j, r_j)));
 }
 
-/* The pair (i, j). */
+/* Adds the pair of pixels i and j to the system. */
 static void join(fusion *f, const img *normal, size_t i, size_t j, vec3 r_i, vec3 r_j, float jump)
 {
     float step = step_between(normal->data + 3 * i, normal->data + 3 * j, r_i, r_j);
@@ -95,7 +96,7 @@ static void join_rows(void *context, size_t begin, size_t end)
     }
 }
 
-/* ---- a strip of pixels at a time, whichever thread it is: sums do not depend on the number of threads ---- */
+/* ---- strips of fixed pixels, so that sums do not depend on the number of threads ---- */
 
 typedef struct strip {
     size_t begin, end;
@@ -114,8 +115,8 @@ static double sum_up(const fusion *f)
     return sum;
 }
 
-/* product = A direction, and what they make of each other. A pixel's pairs with the left and above are kept by those
- * neighbours. */
+/* Computes product = A · direction and their scalar product. A pixel's pairs to the left and above are stored with
+ * those neighbours. */
 static void multiply(void *context, size_t i)
 {
     fusion *f = context;
@@ -135,7 +136,7 @@ static void multiply(void *context, size_t i)
     f->sum[i] = sum;
 }
 
-/* A step's length along the direction, and what is left. */
+/* Updates the solution along the direction, and the residual. */
 static void step(void *context, size_t i)
 {
     fusion *f = context;
@@ -163,7 +164,7 @@ static void turn(void *context, size_t i)
         direction[k] = residual[k] + share * direction[k];
 }
 
-/* Minus the gradient at u = ln z, where the first sum has none. */
+/* Sets the residual to minus the gradient at u = ln z, where the first sum has none. */
 static void start(fusion *f)
 {
     const float *u = f->u;
@@ -178,7 +179,7 @@ static void start(fusion *f)
     memcpy(f->direction, f->residual, f->count * sizeof *f->direction);
 }
 
-/* Conjugate gradients. */
+/* Solves the system by conjugate gradients. */
 static void solve(fusion *f)
 {
     double error = 0;

@@ -6,10 +6,10 @@
 #include "estimate/surface/surface.h"
 
 static const double DIAGONAL_35MM = 43.2666;
-/* Crops of a lens beyond these are those of a wrong number. */
+/* Limits of a crop's field of view in degrees; others come from wrong numbers. */
 static const float NARROWEST = 1, WIDEST = 130;
 
-/* The distance of the image plane in pixels; 0: not known. */
+/* Returns the distance of the image plane in pixels; 0: unknown. */
 static double focal_pixels(float fov, float focal_35mm, int width, int height)
 {
     if (fov > 0) return width / (2 * (double)camera_tangent(fov));
@@ -23,14 +23,14 @@ sight sight_of(float fov, float focal_35mm, int width, int height, crop_square c
     if (!(focal > 0)) return how;
     double right = (crop.x + crop.side / 2.0 - width / 2.0) / focal,
            up = (height / 2.0 - crop.y - crop.side / 2.0) / focal;
-    double far = sqrt(1 + right * right + up * up); /* of the crop's middle, where the plane is 1 away */
+    double far = sqrt(1 + right * right + up * up); /* distance of the crop's middle, where the plane's is 1 */
     float wide = (float)(2 * atan(crop.side / (2 * focal * far)) / (double)DEGREE);
     if (!(wide >= NARROWEST && wide <= WIDEST)) return how;
     how.lens = (camera_lens){wide, {(float)(right / far), (float)(up / far)}};
     return how;
 }
 
-/* v turned by the least rotation that takes unit a to unit b. */
+/* Returns v rotated by the least rotation that takes unit a to unit b. */
 static vec3 turn(vec3 v, vec3 a, vec3 b)
 {
     vec3 sum = vec3_add(a, b);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* How a photograph was taken, as far as anybody knows, and what follows of it for the maps of its crop.
+/* The camera and light of a photograph, as far as they are known, and their consequences for the maps of its crop.
  *
  *     sight how = sight_of(fov, focal_35mm, width, height, crop);
  *     network_estimate(n, &photo, &mask, &how, views, stop, &estimation);
@@ -12,20 +12,21 @@
 #include "optics/camera.h"
 
 typedef struct sight {
-    camera_lens lens; /* of the crop; fov 0: not known */
-    bool flash;       /* its light was a flash at the lens and nothing else */
+    camera_lens lens; /* lens of the crop; fov 0: unknown */
+    bool flash;       /* whether the only light was a flash at the lens */
 } sight;
 
-/* Of a photograph of width × height pixels, its lens's axis through its middle: by how wide it is (fov, degrees), else
- * by the focal length in mm that gives the same on 36 × 24 mm; either may be 0. What cannot be is not known. */
+/* Returns the lens of a crop from a photograph of width × height pixels whose optical axis runs through its middle: by
+ * the field of view (fov, degrees), else by the focal length in mm that gives the same on 36 × 24 mm; either may be 0.
+ * Impossible values count as unknown. */
 sight sight_of(float fov, float focal_35mm, int width, int height, crop_square crop);
 
-/* A model that knows a lens of CAMERA_FOV alone takes every pixel to be seen along that lens's line of sight. A
- * flash's light comes along the true one, and what is seen by it is how a surface is turned against it: its normals are
- * turned from the one to the other. normal: 3 channels; mask: where it is above 0. */
+/* Rotates normals for the lens's field of view. A model trained on CAMERA_FOV assumes that every pixel is seen along
+ * that lens's line of sight; a flash's light comes along the actual one, and shows the angle between it and the
+ * surface, so that normals are rotated from the former to the latter. normal: 3 channels; mask: pixels above 0. */
 void sight_turn_normals(camera_lens lens, const img *mask, img *normal);
 
-/* Depth as relief (nn_render, nn/nn.h) to distances, where mask is above 0. */
+/* Converts depth as relief (nn_render, nn/nn.h) to distances, where mask is above 0. */
 void sight_take_relief(camera_lens lens, const img *mask, img *depth);
 
 #endif

@@ -3,7 +3,7 @@
 
 #include "estimate/surface/fill.h"
 
-/* count values, step floats apart, edges repeated; line: room for count. */
+/* Filters `count` values that are `step` floats apart, repeating the edges; line: room for count. */
 static void smooth_line(float *data, int count, size_t step, float *line)
 {
     for (int i = 0; i < count; i++)

@@ -14,7 +14,7 @@
 #include "optics/camera.h"
 
 static const float LEAST_ROUGHNESS = 0.03f, LEAST_DEPTH = 0.05f, LARGEST_DEPTH = 20.0f;
-/* Normals at the very silhouette are grazing, not behind it. */
+/* Least z of normals: those at the silhouette are grazing, and do not face away. */
 static const float LEAST_NORMAL_Z = 0.02f;
 
 status surface_new(int width, int height, surface *out)
@@ -46,7 +46,7 @@ static void tidy_normal(float n[3])
     vec3_put(v, n);
 }
 
-/* Zeros are left alone (image.h). */
+/* Sets values to zero, without writing to those that are zero already (image.h). */
 static void clear(float *values, int count)
 {
     for (int i = 0; i < count; i++)
@@ -80,7 +80,7 @@ void surface_tidy(surface *s)
     parallel_blocks((size_t)s->mask.width * (size_t)s->mask.height, tidy_pixels, s);
 }
 
-/* Of a map, and the mask it is to agree with. */
+/* A normal map, and the mask that it must agree with. */
 typedef struct normal_map {
     const img *mask;
     img *normal;
@@ -111,7 +111,7 @@ void harden_mask(img *image, img *mask)
     }
 }
 
-/* The mean of what the mask covers, and where it covers nothing, of the neighbours. */
+/* Averages the covered values, and fills what the mask does not cover from its neighbours. */
 static status shrink(const img *from, const img *mask, int width, int height, img *out)
 {
     img cover = {0};
@@ -172,7 +172,7 @@ status surface_resize(const surface *from, const img *mask, surface *out)
     return s;
 }
 
-/* What one map needs to be brought to the guide's size. */
+/* Images needed to resize a map to the guide's size. */
 typedef struct refinement {
     const img *low_mask, *guide, *mask;
 } refinement;
@@ -227,11 +227,14 @@ typedef struct shading {
     const float *albedo, *normal, *roughness, *depth, *mask;
     vec3 light;
     camera_plane plane;
-    float first, step, up; /* the row's first pixel in the plane, from there to the next, and the row */
-    float afar;            /* 1: the light stands so from every pixel's point; 0: from the camera */
+    float first, step,
+        up; /* position of the row's first pixel in the image plane, the step to the next pixel, and the row's height */
+    float
+        afar; /* 1: the light is in this direction from every pixel's point; 0: at this place relative to the camera */
 } shading;
 
-/* GCC makes vectors of a loop only where nothing declared in it has its address taken: its body is a function. */
+/* Adds one pixel's radiance. GCC vectorizes a loop only if no variable declared in it has its address taken, so that
+ * its body is a function. */
 ALWAYS_INLINE void shade_pixel(const shading *s, size_t i, int x, bool matte, float *out)
 {
     const vec3 ray = camera_on_plane(&s->plane, s->first + (float)x * s->step, s->up);

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* A visible surface in a square frame: the maps of one crop, and what is done with them.
+/* A visible surface in a square frame: the maps of one crop, and operations on them.
  *
- *     surface low;                         what the network said, at its size
- *     surface_encode_guide(&guide, gain);  the photograph
- *     surface_refine(&low, &guide, &mask, &full);  the same at its resolution
- *     surface_shade(&full, light, &direct);        under a point light
+ *     surface low;                                 the network's output, at its size
+ *     surface_encode_guide(&guide, gain);          the photograph
+ *     surface_refine(&low, &guide, &mask, &full);  the maps at the photograph's resolution
+ *     surface_shade(&full, light, &direct);        lit by a point light
  *     surface_free(&low);
  *
- * The frame is a camera's of docs/conventions.md that looks at its centre: 60 degrees wide where nothing is known. Maps
- * are zero outside the mask, normals unit with z > 0, everything finite; albedo and roughness in [0, 1]. */
+ * The frame is that of a camera of docs/conventions.md that looks at its centre, 60 degrees wide if nothing is known.
+ * Maps are zero outside the mask, normals unit with z > 0, all values finite; albedo and roughness are in [0, 1]. */
 #ifndef MERLIN_ESTIMATE_SURFACE_SURFACE_H
 #define MERLIN_ESTIMATE_SURFACE_SURFACE_H
 
@@ -20,13 +20,13 @@
 #include "optics/light.h"
 
 typedef struct surface {
-    img albedo;       /* 3 */
-    img normal;       /* 3 */
-    img roughness;    /* 1 */
-    img depth;        /* 1 */
-    img mask;         /* 1, coverage */
-    bool matte;       /* lamps light its diffuse part alone */
-    camera_lens lens; /* fov 0: CAMERA_FOV, no slant */
+    img albedo;       /* 3 channels */
+    img normal;       /* 3 channels */
+    img roughness;    /* 1 channel */
+    img depth;        /* 1 channel */
+    img mask;         /* 1 channel, coverage */
+    bool matte;       /* whether lamps light its diffuse part only */
+    camera_lens lens; /* lens; fov 0 means CAMERA_FOV and no slant */
 } surface;
 
 static inline camera_lens surface_lens(const surface *s)
@@ -34,52 +34,55 @@ static inline camera_lens surface_lens(const surface *s)
     return s->lens.fov > 0 ? s->lens : (camera_lens){.fov = CAMERA_FOV};
 }
 
-/* The camera that sees the maps. */
+/* Returns the camera that sees the maps. */
 static inline camera surface_camera(const surface *s)
 {
     return camera_through(surface_lens(s), s->mask.width, s->mask.height);
 }
 
-/* Zero maps of width × height. */
+/* Makes maps of zeros, width × height. */
 status surface_new(int width, int height, surface *out);
 void surface_free(surface *s);
 
-/* Makes what the header promises true for any content: out-of-range values are clamped, normals made unit and turned
- * toward the camera, non-finite values replaced, everything outside the mask zeroed. */
+/* Makes any content keep the promises above: out-of-range values are clamped, normals made unit and turned toward the
+ * camera, non-finite values replaced, and everything outside the mask zeroed. */
 void surface_tidy(surface *s);
-/* A normal map likewise; mask: its size. */
+/* Does the same for a normal map; mask: of its size. */
 void surface_tidy_normals(const img *mask, img *normal);
 
-/* What the network is given: a mask that is 0 or 1, and an image (3 channels, may be NULL) that is zero outside it and
- * not negative inside. */
+/* Makes a mask and an image (3 channels, may be NULL) the network's input: the mask 0 or 1, the image zero outside it
+ * and not negative inside. */
 void harden_mask(img *image, img *mask);
 
-/* To another square size, averaging or interpolating the object's own pixels only. mask: the new size's. */
+/* Resizes maps to another square size, averaging or interpolating only the object's own pixels. mask: of the new size.
+ */
 status surface_resize(const surface *from, const img *mask, surface *out);
 
-/* Makes a photograph (linear, any size) a guide: its noise should be even from shadow to light, and a square root does
- * that for photon noise. gain: the photograph's (exposure.h). Bright pictures of any unit become the usual ones; dark
- * ones stay dark, for brightening would bring their noise above what is followed. */
+/* Makes a photograph (linear, any size) a guide by a square root, which gives photon noise the same strength in shadow
+ * and light. gain: the photograph's (exposure.h), which scales bright pictures of any unit to the usual range; dark
+ * ones stay dark, as brightening them would raise their noise above the guide's threshold. */
 void surface_encode_guide(img *photo, float gain);
 
-/* The same with albedo and roughness edges that follow a guide (3 channels, encoded, mask's size); shape does not, or
- * print on a flat side would become relief. For a guide smaller than the surface this is surface_resize. */
+/* Resizes as surface_resize does, with edges of albedo and roughness that follow a guide (3 channels, encoded, mask's
+ * size); shape does not follow it, or print on a flat side would become relief. If the guide is smaller than the
+ * surface, this is surface_resize. */
 status surface_refine(const surface *from, const img *guide, const img *mask, surface *out);
 
-/* Radiance under a point light of the training data's power at `light`, before clipping, times coverage; no shadows. */
+/* Computes the radiance under a point light of the training data's power at `light`, before clipping, times coverage,
+ * without shadows. */
 status surface_shade(const surface *s, vec3 light, img *out);
-/* Under a lamp, near or distant, as if its tint were white. */
+/* Does the same for a near or distant lamp, as if its tint were white. */
 status surface_shade_lamp(const surface *s, const lamp *l, img *out);
-/* The same, added to what out holds already. */
+/* Adds the radiance under a point light to the content of out. */
 void surface_add_light(const surface *s, vec3 light, img *out);
 
-/* Light of bounces 2 and up from the network's size to cover's, and under it alone: smooth by nature, so that the
- * pattern of the network's last layer, two pixels wide, is averaged away. */
+/* Resizes light of bounces 2 and up from the network's size to cover's, limited to it. The light is smooth, so that it
+ * is averaged to half its size, which removes the two-pixel pattern of the network's last layer. */
 status surface_resize_indirect(const img *from, const img *mask, const img *cover, img *out);
 
-/* Any image that belongs to a surface, resized without letting its outside in: shrunk, it is weighted by the mask;
- * enlarged, values where mask < 0.5 are replaced by their neighbours' first. cover: the new size's mask, beside which
- * an enlarged image may be zero (img_resize_covered). */
+/* Resizes any image of a surface without influence of values outside it: to shrink, it is weighted by the mask; to
+ * enlarge, values where mask < 0.5 are first replaced by their neighbours'. cover: the new size's mask, outside of
+ * which an enlarged image may be zero (img_resize_covered). */
 status surface_resize_image(const img *from, const img *mask, const img *cover, img *out);
 
 #endif
