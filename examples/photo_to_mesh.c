@@ -6,7 +6,6 @@
 #include <stdio.h>
 
 #include "merlin/merlin.h"
-#include "merlin/stereo.h"
 
 enum { LIGHTS = 30, SIDE = 256 };
 
@@ -41,6 +40,7 @@ int main(int argc, char **argv)
     merlin_relighter *relighter = NULL;
     merlin_capture *capture = NULL;
     merlin_surface surface = {0};
+    merlin_mesh mesh = {0};
     if (argc != 4) {
         fprintf(stderr, "usage: %s WEIGHTS PHOTO OUT.glb\n", argv[0]);
         return 2;
@@ -50,8 +50,10 @@ int main(int argc, char **argv)
                  merlin_estimate(model, &photo, &alpha, NULL, &maps) ||
                  merlin_relighter_new(model, &maps, SIDE, MERLIN_BY_BRDF_UNSHADOWED, &relighter) ||
                  merlin_capture_new(&near_lights, NULL, &capture) || add_pictures(relighter, maps.gain, capture) ||
-                 merlin_stereo(capture, NULL, &surface) || merlin_mesh_write(argv[3], &surface);
+                 merlin_stereo(capture, NULL, &surface) || merlin_mesh_from_surface(&surface, &mesh) ||
+                 merlin_mesh_write(&mesh, argv[3], NULL);
     if (failed) fprintf(stderr, "%s\n", merlin_error());
+    merlin_mesh_free(&mesh);
     merlin_surface_free(&surface);
     merlin_capture_free(capture);
     merlin_relighter_free(relighter);

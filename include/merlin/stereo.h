@@ -4,11 +4,11 @@
  *     merlin_capture *capture;
  *     merlin_surface surface;
  *
- *     if (merlin_capture_read("owl", NULL, &capture) || merlin_stereo(capture, NULL, &surface) ||
- *         merlin_mesh_write("owl.glb", &surface))
+ *     if (merlin_capture_read("owl", NULL, &capture) || merlin_stereo(capture, NULL, &surface))
  *         fprintf(stderr, "%s\n", merlin_error());
  *
- * One camera, one still object, one light at a time. Images, space, errors and who frees what are as in merlin.h. */
+ * merlin/mesh.h makes triangles of it. One camera, one still object, one light at a time. Images, space, errors and who
+ * frees what are as in merlin.h. */
 #ifndef MERLIN_STEREO_H
 #define MERLIN_STEREO_H
 
@@ -134,10 +134,6 @@ typedef struct merlin_surface {
  * MERLIN_STEREO_AUTO or _NEAR, where that explains the pictures better than directions do. */
 merlin_status merlin_stereo(const merlin_capture *capture, const merlin_stereo_params *params, merlin_surface *out);
 void merlin_surface_free(merlin_surface *surface);
-
-/* The front as triangles, by the path's ending: .ply with vertex colours, .obj (with .mtl and .png beside it), .glb
- * with albedo and normals as textures. Albedo is scaled so that its brightest are 0.9. */
-merlin_status merlin_mesh_write(const char *path, const merlin_surface *surface);
 
 #ifdef __cplusplus
 }

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ctypes
 from ctypes import CFUNCTYPE, POINTER, c_char, c_char_p, c_double, c_float, c_int, c_size_t, c_ssize_t, c_uint
-from ctypes import c_int64, c_uint64, c_void_p
+from ctypes import c_int64, c_uint32, c_uint64, c_void_p
 from typing import Any, Dict, List, Tuple
 
 floats3 = c_float * 3
@@ -117,6 +117,15 @@ Calibration = _struct("calibration", [
     ("names", POINTER(c_char_p)), ("lights", POINTER(Light)), ("highlights", POINTER(Circle)),
     ("residuals", POINTER(c_float)), ("warnings", Warnings), ("skipped", SkippedFiles), ("brightest", Image)])
 
+# ---- mesh.h ----
+
+Mesh = _struct("mesh", [
+    ("vertex_count", c_size_t), ("triangle_count", c_size_t), ("positions", POINTER(c_float)),
+    ("normals", POINTER(c_float)), ("uvs", POINTER(c_float)), ("colors", POINTER(c_float)),
+    ("triangles", POINTER(c_uint32)), ("width", c_int), ("height", c_int), ("pixels", POINTER(c_uint32)),
+    ("face_normals", POINTER(c_float)), ("albedo", Image), ("roughness", Image), ("scale", c_double)])
+MeshParams = _struct("mesh_params", [("side", c_int), ("texture_side", c_int)])
+
 # ---- view.h ----
 
 VIEW_SIDE, VIEW_LEAST_SIDE, VIEW_MOST_SIDE = 2048, 64, 4096
@@ -186,7 +195,11 @@ FUNCTIONS: Dict[str, Tuple[Any, List[Any]]] = {
     "capture_free": (None, [_handle]),
     "stereo": (c_int, [_handle, _at(StereoParams), _at(Surface)]),
     "surface_free": (None, [_at(Surface)]),
-    "mesh_write": (c_int, [c_char_p, _at(Surface)]),
+    "mesh_from_maps": (c_int, [_at(Maps), _at(MeshParams), _at(Mesh)]),
+    "mesh_from_surface": (c_int, [_at(Surface), _at(Mesh)]),
+    "mesh_free": (None, [_at(Mesh)]),
+    "mesh_check_name": (c_int, [c_char_p]),
+    "mesh_write": (c_int, [_at(Mesh), c_char_p, _at(Files)]),
     "calibrate": (c_int, [c_char_p, _at(CalibrateParams), _at(Calibration)]),
     "calibration_free": (None, [_at(Calibration)]),
     "calibration_write": (c_int, [_at(Calibration), c_char_p, _at(Files)]),

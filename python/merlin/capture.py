@@ -141,7 +141,11 @@ class Surface:
     def save(self, path: PathLike) -> None:
         """Writes the front as triangles, by the path's ending: .ply with vertex colours, .obj (with .mtl and .png
         beside it), .glb with albedo and normals as textures. Albedo is scaled so that its brightest are 0.9."""
-        check("mesh_write", path_bytes(path), self._owner.at)
+        name = path_bytes(path)
+        check("mesh_check_name", name)
+        mesh = Owner(h.Mesh(), "mesh_free")
+        check("mesh_from_surface", self._owner.at, mesh.at)
+        check("mesh_write", mesh.at, name, None)
 
 
 # ---- the short way ----

@@ -15,7 +15,6 @@
 #include "cli/expect.h"
 #include "cli/mesh_file.h"
 #include "cli/page.h"
-#include "cli/photo_mesh.h"
 #include "cli/stage_bar.h"
 #include "cli/written.h"
 #include "command/check_files.h"
@@ -209,11 +208,6 @@ typedef struct more_work {
     const char *const *inputs;
 } more_work;
 
-static status write_named_mesh(const void *maps, const char *path)
-{
-    return photo_mesh_write(maps, path);
-}
-
 static void plan(const request *r, double pixels)
 {
     stage_cost stages[STAGE_BAR_MOST];
@@ -223,15 +217,27 @@ static void plan(const request *r, double pixels)
     stage_bar_plan(r->bar, stages, count);
 }
 
-static status write_more(const more_work *w, const merlin_maps *maps, maps_staging *to)
+static status write_meshes(const more_work *w, const merlin_maps *maps, maps_staging *to)
 {
+    const mesh_names *names = &w->request->meshes;
     char path[PATH_MAX];
-    status s = w->request->mesh ? photo_mesh_write(maps, staging_path(to->at[0], "mesh.glb", path)) : OK;
-    for (int i = 0; i < w->request->meshes.count && s == OK; i++) {
-        mesh_file named = {w->request->meshes.at[i], w->job->output, w->inputs, to->at[0], write_named_mesh, maps};
+    merlin_mesh mesh;
+    if (!w->request->mesh && !names->count) return OK;
+    status s = merlin_mesh_from_maps(maps, NULL, &mesh);
+    if (s == OK && w->request->mesh) s = merlin_mesh_write(&mesh, staging_path(to->at[0], "mesh.glb", path), NULL);
+    for (int i = 0; i < names->count && s == OK; i++) {
+        mesh_file named = {names->at[i], w->job->output, w->inputs, to->at[0], &mesh};
         s = mesh_file_stage(&named, &to->at[to->count]);
         to->count += to->at[to->count] != NULL;
     }
+    merlin_mesh_free(&mesh);
+    return s;
+}
+
+static status write_more(const more_work *w, const merlin_maps *maps, maps_staging *to)
+{
+    char path[PATH_MAX];
+    status s = write_meshes(w, maps, to);
     const page_source of = {standard_input_name(w->job->photo), w->job->output, 0, false};
     if (s == OK && w->request->html) s = page_write(maps, &of, staging_path(to->at[0], PAGE_FILE, path));
     return s == OK && cli_interrupted() ? fail(MERLIN_STOPPED, "stopped") : s;

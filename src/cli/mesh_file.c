@@ -6,14 +6,14 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "mesh/write/mesh_write.h"
+#include "merlin/mesh.h"
 
 status mesh_take_name(const char *path, void *into)
 {
     mesh_names *names = into;
     if (names->count == MESH_MOST_FILES) return fail(MERLIN_WRONG_USE, "--mesh may be given %d times", MESH_MOST_FILES);
     names->at[names->count++] = path;
-    return mesh_check_name(path);
+    return merlin_mesh_check_name(path);
 }
 
 bool mesh_is_name(const char *word)
@@ -52,5 +52,5 @@ status mesh_file_stage(const mesh_file *m, staging **out)
     free(folder);
     if (s != OK) return s;
     char aside[PATH_MAX];
-    return m->write(m->what, staging_path(*out, file_name_of(m->path), aside));
+    return merlin_mesh_write(m->mesh, staging_path(*out, file_name_of(m->path), aside), NULL);
 }

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* A mesh that --mesh FILE names, written beside maps that go somewhere else: all of them or none.
  *
- *     mesh_file m = {.path = "cup.obj", .folder = "cup.merlin", .inputs = inputs, .maps = maps, .write = write, .what =
- * r}; staging *t; status s = mesh_file_stage(&m, &t);
+ *     mesh_file m = {.path = "cup.obj", .folder = "cup.merlin", .inputs = inputs, .maps = maps, .mesh = &mesh};
+ *     staging *t;
+ *     status s = mesh_file_stage(&m, &t);
  *     ... staging_commit_all with the maps, or staging_abort ...
  */
 #ifndef MERLIN_CLI_MESH_FILE_H
@@ -11,6 +12,7 @@
 #include <stdbool.h>
 
 #include "base/staging.h"
+#include "merlin/mesh.h"
 
 enum { MESH_MOST_FILES = MAPS_MOST_ELSEWHERE };
 
@@ -19,8 +21,7 @@ typedef struct mesh_file {
     const char *folder;        /* of the maps */
     const char *const *inputs; /* as in staging_begin; the first may be a folder of pictures */
     const staging *maps;
-    status (*write)(const void *what, const char *path);
-    const void *what;
+    const merlin_mesh *mesh;
 } mesh_file;
 
 /* The names that --mesh has got. */

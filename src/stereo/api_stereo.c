@@ -7,9 +7,7 @@
 #include <string.h>
 
 #include "base/api_needs.h"
-#include "mesh/write/mesh_write.h"
 #include "stereo/doubts/capture_doubts.h"
-#include "stereo/fit/albedo_scale.h"
 #include "stereo/methods/place_lights.h"
 #include "stereo/methods/solve.h"
 
@@ -193,36 +191,5 @@ merlin_status merlin_stereo(const merlin_capture *capture, const merlin_stereo_p
     if (s == OK) s = solve(&c, params, out);
     if (search) img_free(&c.mask);
     if (s != OK) merlin_surface_free(out);
-    return s;
-}
-
-static status check_surface(const merlin_surface *s)
-{
-    const merlin_image *maps[] = {&s->normal, &s->depth, &s->mask};
-    const int channels[] = {3, 1, 1};
-    bool sound = s->albedo.data && (s->albedo.channels == 1 || s->albedo.channels == 3);
-    for (int i = 0; i < 3; i++)
-        sound &= maps[i]->data && maps[i]->channels == channels[i] && maps[i]->width == s->albedo.width &&
-                 maps[i]->height == s->albedo.height;
-    return sound ? OK : fail(MERLIN_WRONG_USE, "this surface is empty or incomplete");
-}
-
-merlin_status merlin_mesh_write(const char *path, const merlin_surface *surface)
-{
-    status s = api_needs(__func__, path && surface);
-    if (s == OK) s = mesh_check_name(path);
-    if (s == OK) s = check_surface(surface);
-    if (s != OK) return s;
-    img albedo = {0};
-    float scale;
-    s = img_copy(&albedo, &surface->albedo);
-    if (s == OK) s = pst_scale_albedo(&albedo, &surface->mask, &scale);
-    const mesh_source source = {.depth = &surface->depth,
-                                .mask = &surface->mask,
-                                .normal = &surface->normal,
-                                .albedo = &albedo,
-                                .camera = surface->camera};
-    if (s == OK) s = mesh_write(path, &source);
-    img_free(&albedo);
     return s;
 }

@@ -32,6 +32,7 @@ typedef struct work {
     merlin_model *opened;
     merlin_weights weights;
     merlin_maps made;
+    merlin_mesh mesh;
     merlin_image picture;
     uint64_t first; /* sum of what the first run gave; 0: there was none */
 } work;
@@ -225,6 +226,26 @@ static int relight_many(void *context)
     return s;
 }
 
+static int make_mesh(void *context)
+{
+    work *w = context;
+    memset(&w->mesh, 1, sizeof w->mesh);
+    return merlin_mesh_from_maps(&w->maps, &(merlin_mesh_params){.side = 16}, &w->mesh);
+}
+
+static const char *check_mesh(void *context, int result)
+{
+    work *w = context;
+    const merlin_mesh *m = &w->mesh;
+    const char *fault = NULL;
+    if (result == MERLIN_OK)
+        fault = is_as_ever(w, sum_of(sum_image(1, &m->albedo), m->positions, 3 * m->vertex_count * sizeof(float)));
+    else if (!is_empty(m, sizeof *m))
+        return "a mesh";
+    merlin_mesh_free(&w->mesh);
+    return fault;
+}
+
 static const char *check_picture(void *context, int result)
 {
     work *w = context;
@@ -289,6 +310,13 @@ static void lack_of_memory_relights_nothing(void **state)
     }
 }
 
+static void lack_of_memory_makes_no_mesh(void **state)
+{
+    work *w = *state;
+    w->first = 0;
+    each_allocation_fails(&(memory_trial){"mesh", make_mesh, check_mesh, w});
+}
+
 static void draw(work *w)
 {
     w->photo = (merlin_image){SIDE, SIDE, 3, calloc(3 * PIXELS, sizeof(float))};
@@ -350,6 +378,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(lack_of_memory_makes_no_maps, set_up, tear_down),
         cmocka_unit_test_setup_teardown(lack_of_memory_writes_no_maps, set_up, tear_down),
         cmocka_unit_test_setup_teardown(lack_of_memory_reads_no_maps, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(lack_of_memory_makes_no_mesh, set_up, tear_down),
         cmocka_unit_test_setup_teardown(lack_of_memory_relights_nothing, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

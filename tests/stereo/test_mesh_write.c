@@ -15,7 +15,7 @@
 #include "base/file.h"
 #include "image/read/read.h"
 #include "image/resize.h"
-#include "mesh/write/mesh_write.h"
+#include "mesh/surface/surface_mesh.h"
 #include "scratch.h"
 
 #include <cmocka.h>
@@ -53,7 +53,7 @@ static void sheet_new(sheet *s, bool perspective)
     assert_int_equal(img_new(&s->roughness, WIDTH, HEIGHT, 1), OK);
     sheet_fill(s);
     s->source = (mesh_source){
-        &s->depth, &s->mask, &s->normal, &s->albedo, &s->roughness, {.focal = perspective ? 10 : 0}, {0, 0}};
+        &s->depth, &s->mask, &s->normal, &s->albedo, NULL, &s->roughness, {.focal = perspective ? 10 : 0}, {0, 0}};
     s->source.camera.x = 6;
     s->source.camera.y = 4.5f;
 }
@@ -65,6 +65,15 @@ static void sheet_free(sheet *s)
     img_free(&s->mask);
     img_free(&s->normal);
     img_free(&s->albedo);
+}
+
+static status mesh_write(const char *path, const mesh_source *from)
+{
+    merlin_mesh mesh;
+    status s = surface_mesh_new(from, &mesh);
+    if (s == OK) s = merlin_mesh_write(&mesh, path, NULL);
+    merlin_mesh_free(&mesh);
+    return s;
 }
 
 /* The near part has 8 × 9 − 1 vertices and 7 × 8 squares, one of them half; the far part 4 × 9 and 3 × 8. */
@@ -230,9 +239,10 @@ static void a_texture_may_be_finer_than_the_shape(void **state)
     sheet_new(&s, true);
     img fine = {0};
     assert_int_equal(img_resize(&s.albedo, 3 * WIDTH, 3 * HEIGHT, &fine), OK);
-    s.source.albedo = &fine;
+    s.source.texture = &fine;
     assert_int_equal(mesh_write(scratch_path("fine.glb"), &s.source), OK);
     check_mesh(scratch_path("fine.glb"), false, true);
+    s.source.albedo = &fine;
     assert_int_equal(mesh_write(scratch_path("fine.ply"), &s.source), MERLIN_WRONG_USE);
     assert_false(file_exists(scratch_path("fine.ply")));
     img_free(&fine);

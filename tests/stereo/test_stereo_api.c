@@ -7,6 +7,7 @@
 #include "capture_files.h"
 #include "image/image.h"
 #include "image/write/write.h"
+#include "merlin/mesh.h"
 
 enum { SIZE = 64, LIGHTS = 12, PIXELS = SIZE * SIZE };
 static const float RADIUS = 28, ALBEDO[3] = {0.6f, 0.4f, 0.2f};
@@ -265,28 +266,64 @@ static void write_folder(void)
     write_text("lights.txt", lights);
 }
 
+/* The ball's triangles look at the camera, its normals lie near theirs, and each vertex has what its pixel has. */
+static void check_mesh(const merlin_mesh *m, const merlin_surface *s)
+{
+    size_t pixels = 0;
+    for (int i = 0; i < PIXELS; i++)
+        pixels += s->mask.data[i] > 0.5f;
+    assert_int_equal(m->vertex_count, pixels);
+    assert_true(m->triangle_count > pixels && m->triangle_count < 2 * pixels);
+    for (size_t v = 0; v < m->vertex_count; v++) {
+        const float *n = m->normals + 3 * v, *face = m->face_normals + 3 * v, *p = m->positions + 3 * v;
+        const uint32_t pixel = m->pixels[v];
+        for (size_t k = 0; k < 3; k++) /* made unit once more, to a float's precision */
+            assert_float_equal(n[k], s->normal.data[(size_t)3 * pixel + k], 1e-6f);
+        assert_true(face[2] > 0 && n[0] * face[0] + n[1] * face[1] + n[2] * face[2] > 0.8f);
+        assert_true(p[2] == -s->depth.data[pixel]);
+        assert_float_equal(m->uvs[2 * v] * SIZE, (float)(pixel % SIZE) + 0.5f, 1e-4f);
+        assert_float_equal(m->uvs[2 * v + 1] * SIZE, (float)(pixel / SIZE) + 0.5f, 1e-4f);
+        assert_memory_equal(m->colors + 3 * v, m->albedo.data + (size_t)3 * pixel, 3 * sizeof *n);
+    }
+    assert_float_equal(m->scale, 1.0 / SIZE, 0);
+}
+
 static void folder_becomes_a_mesh(void **state)
 {
     (void)state;
     write_folder();
     merlin_capture *capture;
     merlin_surface surface;
+    merlin_mesh mesh;
+    merlin_files written;
     assert_int_equal(merlin_capture_read(scratch, NULL, &capture), MERLIN_OK);
     assert_int_equal(merlin_stereo(capture, &(merlin_stereo_params){.keep_edges = 1}, &surface), MERLIN_OK);
     assert_true(mean_error(&surface) < 0.2f);
     merlin_capture_free(capture);
-    const char *const names[] = {"ball.ply", "ball.obj", "ball.glb"};
+    assert_int_equal(merlin_mesh_from_surface(&surface, &mesh), MERLIN_OK);
+    check_mesh(&mesh, &surface);
+    const char *const names[] = {"ball.ply", "ball.OBJ", "ball.glb"};
     for (int i = 0; i < 3; i++) {
-        assert_int_equal(merlin_mesh_write(scratch_path(names[i]), &surface), MERLIN_OK);
-        assert_true(file_exists(scratch_path(names[i])));
+        assert_int_equal(merlin_mesh_write(&mesh, scratch_path(names[i]), &written), MERLIN_OK);
+        assert_int_equal(written.count, i == 1 ? 3 : 1);
+        for (size_t k = 0; k < written.count; k++)
+            assert_true(file_exists(written.at[k]));
+        assert_true(written.bytes > 1000);
+        merlin_files_free(&written);
     }
-    assert_int_equal(merlin_mesh_write(scratch_path("ball.stl"), &surface), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_mesh_write(&mesh, scratch_path("ball.stl"), &written), MERLIN_WRONG_USE);
     assert_says(".stl");
-    assert_int_equal(merlin_mesh_write(scratch_path("nowhere/ball.glb"), &surface), MERLIN_CANNOT_WRITE);
+    assert_int_equal(written.count, 0);
+    assert_int_equal(merlin_mesh_write(&mesh, scratch_path("nowhere/ball.glb"), NULL), MERLIN_CANNOT_WRITE);
     assert_says("nowhere/ball.glb: No such"); /* not a temporary file's name */
-    merlin_surface_free(&surface);
-    assert_int_equal(merlin_mesh_write(scratch_path("none.ply"), &surface), MERLIN_WRONG_USE);
+    mesh.triangles[4] = (uint32_t)mesh.vertex_count;
+    assert_int_equal(merlin_mesh_write(&mesh, scratch_path("none.ply"), NULL), MERLIN_WRONG_USE);
+    merlin_mesh_free(&mesh);
+    assert_int_equal(merlin_mesh_write(&mesh, scratch_path("none.ply"), NULL), MERLIN_WRONG_USE);
     assert_false(file_exists(scratch_path("none.ply")));
+    merlin_surface_free(&surface);
+    assert_int_equal(merlin_mesh_from_surface(&surface, &mesh), MERLIN_WRONG_USE);
+    assert_null(mesh.positions);
     assert_int_equal(merlin_capture_read(scratch_path("nowhere"), NULL, &capture), MERLIN_BAD_INPUT);
     assert_null(capture);
     static const float no_view[] = {NAN, -20, 200};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Memory runs out at any allocation between pictures, a surface and its mesh: every failure is reported, the surface is
  * empty, no mesh is left, and the next call gives the same surface as ever. */
-#include "merlin/stereo.h"
+#include "merlin/mesh.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -145,7 +145,13 @@ static const char *check_surface(void *context, int result)
 static int write_mesh(void *context)
 {
     const work *w = context;
-    return merlin_mesh_write(w->mesh, &w->made);
+    merlin_mesh mesh;
+    merlin_files written;
+    int result = merlin_mesh_from_surface(&w->made, &mesh);
+    if (result == MERLIN_OK) result = merlin_mesh_write(&mesh, w->mesh, &written);
+    if (result == MERLIN_OK) merlin_files_free(&written);
+    merlin_mesh_free(&mesh);
+    return result;
 }
 
 static const char *check_mesh(void *context, int result)

@@ -15,7 +15,7 @@
 #include "estimate/surface/crop.h"
 #include "image/write/figure.h"
 #include "image/write/write.h"
-#include "mesh/write/mesh_write.h"
+#include "mesh/surface/surface_mesh.h"
 
 enum { TILES = 6, COLUMNS = 3, TILE_SIZE = 384 };
 
@@ -113,10 +113,11 @@ static status write_overview(const stereo_result *r, const char *path)
     return s;
 }
 
-static status write_mesh(const stereo_result *r, const char *path)
+static status make_mesh(const stereo_result *r, merlin_mesh *out)
 {
-    mesh_source source = {&r->depth, &r->mask, &r->normal, &r->albedo, NULL, r->camera, {0, 0}};
-    return mesh_write(path, &source);
+    const mesh_source source = {
+        .depth = &r->depth, .mask = &r->mask, .normal = &r->normal, .albedo = &r->albedo, .camera = r->camera};
+    return surface_mesh_new(&source, out);
 }
 
 static status write_report(const cJSON *report, const char *path)
@@ -132,15 +133,21 @@ static status write_report(const cJSON *report, const char *path)
 
 typedef struct output {
     const char *name;
-    status (*write)(const stereo_result *r, const char *path);
+    status (*write)(const stereo_result *r, const char *path); /* NULL: a mesh */
 } output;
 
 /* The slowest first, so that two processors end together; of these the meshes, which others replace if they are asked
  * for by name. */
 static const output outputs[] = {
-    {"mesh.obj", write_mesh},     {"mesh.glb", write_mesh},         {"mesh.ply", write_mesh},
-    {"maps.exr", write_exr},      {"overview.png", write_overview}, {"normal.png", write_normal},
-    {"albedo.png", write_albedo}, {"depth.png", write_depth},       {"error.png", write_error},
+    {"mesh.obj", NULL},
+    {"mesh.glb", NULL},
+    {"mesh.ply", NULL},
+    {"maps.exr", write_exr},
+    {"overview.png", write_overview},
+    {"normal.png", write_normal},
+    {"albedo.png", write_albedo},
+    {"depth.png", write_depth},
+    {"error.png", write_error},
     {"mask.png", write_mask},
 };
 enum { MESHES = 3, OUTPUTS = sizeof outputs / sizeof outputs[0] };
@@ -149,6 +156,7 @@ typedef struct writing {
     const stereo_files *files;
     const staging *staging;
     const stereo_result *result;
+    const merlin_mesh *mesh;
     size_t first; /* output */
 } writing;
 
@@ -158,12 +166,14 @@ static status write_one(void *context, size_t i)
     char path[PATH_MAX];
     if (w->files->stop && w->files->stop()) return fail(MERLIN_STOPPED, "stopped");
     const output *o = &outputs[w->first + i];
-    return o->write(w->result, staging_path(w->staging, o->name, path));
+    staging_path(w->staging, o->name, path);
+    return o->write ? o->write(w->result, path) : merlin_mesh_write(w->mesh, path, NULL);
 }
 
-static status write_all(const stereo_files *files, const staging *t, const stereo_result *r, const cJSON *report)
+static status write_all(const stereo_files *files, const staging *t, const stereo_result *r, const merlin_mesh *mesh,
+                        const cJSON *report)
 {
-    writing w = {files, t, r, files->mesh.count ? MESHES : 0};
+    writing w = {files, t, r, mesh, files->mesh.count ? MESHES : 0};
     status s = parallel_try(OUTPUTS - w.first, write_one, &w);
     char path[PATH_MAX];
     return s == OK ? write_report(report, staging_path(t, "report.json", path)) : s;
@@ -182,30 +192,22 @@ static status write_page(const stereo_files *files, const staging *t)
     return s;
 }
 
-static status write_named_mesh(const void *result, const char *path)
-{
-    return write_mesh(result, path);
-}
-
-static status stage_mesh(const stereo_files *files, const staging *maps, const char *path, const stereo_result *r,
-                         staging **out)
-{
-    mesh_file named = {path, files->folder, files->inputs, maps, write_named_mesh, r};
-    return mesh_file_stage(&named, out);
-}
-
 status stereo_write(const stereo_files *files, const stereo_result *r, const cJSON *report, staged_files *written)
 {
     staging *t[1 + MESH_MOST_FILES] = {NULL};
     int count = 1;
     status s = staging_begin(files->folder, files->inputs, &t[0]);
     if (s != OK) return s;
-    s = write_all(files, t[0], r, report);
+    merlin_mesh mesh;
+    s = make_mesh(r, &mesh);
+    if (s == OK) s = write_all(files, t[0], r, &mesh, report);
     if (s == OK && files->page) s = write_page(files, t[0]);
     for (int i = 0; i < files->mesh.count && s == OK; i++) {
-        s = stage_mesh(files, t[0], files->mesh.at[i], r, &t[count]);
+        mesh_file named = {files->mesh.at[i], files->folder, files->inputs, t[0], &mesh};
+        s = mesh_file_stage(&named, &t[count]);
         count += t[count] != NULL;
     }
+    merlin_mesh_free(&mesh);
     if (s == OK) return staging_commit_all(t, count, written);
     while (count > 0)
         s = staging_abort(t[--count], s);

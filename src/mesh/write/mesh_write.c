@@ -1,15 +1,25 @@
 /* SPDX-License-Identifier: MIT */
-#include "mesh/write/mesh_write.h"
+/* Writes a mesh to the format that its file's name ends in, and tells which files that made. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
 
+#include "base/api_needs.h"
 #include "base/file.h"
 #include "mesh/write/mesh_formats.h"
 
+enum { MOST_FILES = 3 };
+
 typedef struct format {
     const char *ending;
-    status (*write)(const char *path, const surface_mesh *m, const mesh_source *from);
+    status (*write)(const char *path, const merlin_mesh *m);
+    const char *textured[MOST_FILES], *plain[MOST_FILES]; /* the files, sorted, of meshes with and without albedo */
 } format;
 
-static const format formats[] = {{".ply", mesh_write_ply}, {".obj", mesh_write_obj}, {".glb", mesh_write_glb}};
+static const format formats[] = {{".ply", mesh_write_ply, {".ply"}, {".ply"}},
+                                 {".obj", mesh_write_obj, {".mtl", ".obj", ".png"}, {".mtl", ".obj"}},
+                                 {".glb", mesh_write_glb, {".glb"}, {".glb"}}};
 enum { FORMATS = sizeof formats / sizeof formats[0] };
 
 static const format *format_of(const char *path)
@@ -19,19 +29,82 @@ static const format *format_of(const char *path)
     return NULL;
 }
 
-status mesh_check_name(const char *path)
+merlin_status merlin_mesh_check_name(const char *path)
 {
+    status s = api_needs(__func__, path);
+    if (s != OK) return s;
     return format_of(path) ? OK : fail(MERLIN_WRONG_USE, "%s: a mesh's name ends in .ply, .obj or .glb", path);
 }
 
-status mesh_write(const char *path, const mesh_source *from)
+/* ---- meshes that anybody may have made ---- */
+
+static bool all_below(const uint32_t *numbers, size_t count, size_t limit)
 {
-    surface_mesh m;
-    status s = mesh_check_name(path);
+    for (size_t i = 0; i < count; i++)
+        if (numbers[i] >= limit) return false;
+    return true;
+}
+
+static bool is_texture(const merlin_image *image, int channels)
+{
+    return !image->data || (image->channels == channels && image->width > 0 && image->height > 0);
+}
+
+static status check(const merlin_mesh *m)
+{
+    if (!m->vertex_count || !m->positions || !m->normals || !m->uvs || (m->triangle_count && !m->triangles))
+        return fail(MERLIN_WRONG_USE, "this mesh is empty or incomplete");
+    if (!all_below(m->triangles, 3 * m->triangle_count, m->vertex_count))
+        return fail(MERLIN_WRONG_USE, "a triangle of this mesh has a vertex that is not there");
+    if (!is_texture(&m->albedo, 3) || !is_texture(&m->roughness, 1))
+        return fail(MERLIN_WRONG_USE, "a mesh's albedo has 3 channels, its roughness 1");
+    if (!m->face_normals) return OK;
+    bool placed = m->pixels && m->width > 0 && m->height > 0 &&
+                  all_below(m->pixels, m->vertex_count, (size_t)m->width * (size_t)m->height);
+    return placed ? OK : fail(MERLIN_WRONG_USE, "a mesh with face_normals wants the pixels of its vertices");
+}
+
+/* ---- what is written ---- */
+
+/* Lists names before anything is written, so that a lack of memory leaves no file. */
+static status list_files(const format *f, const char *path, bool textured, merlin_files *out)
+{
+    const char *const *endings = textured ? f->textured : f->plain;
+    const int stem = (int)(strlen(path) - strlen(f->ending));
+    out->at = calloc(MOST_FILES, sizeof *out->at);
+    for (size_t i = 0; out->at && i < MOST_FILES && endings[i]; i++) {
+        /* the ending that was asked for keeps its case */
+        const char *ending = strcmp(endings[i], f->ending) == 0 ? path + stem : endings[i];
+        if (asprintf(&out->at[i], "%.*s%s", stem, path, ending) < 0) break;
+        out->count++;
+    }
+    if (out->count > 0 && (out->count == MOST_FILES || !endings[out->count])) return OK;
+    merlin_files_free(out);
+    return fail(MERLIN_NO_MEMORY, "no memory for file names");
+}
+
+static void add_sizes(merlin_files *files)
+{
+    struct stat about;
+    for (size_t i = 0; i < files->count; i++)
+        if (stat(files->at[i], &about) == 0) files->bytes += (uint64_t)about.st_size;
+}
+
+merlin_status merlin_mesh_write(const merlin_mesh *mesh, const char *path, merlin_files *written)
+{
+    merlin_files files = {0};
+    if (written) *written = files;
+    status s = api_needs(__func__, mesh && path);
+    if (s == OK) s = merlin_mesh_check_name(path);
+    if (s == OK) s = check(mesh);
     if (s == OK) s = file_check_writable(path);
-    if (s == OK) s = surface_mesh_new(from, &m);
-    if (s != OK) return s;
-    s = format_of(path)->write(path, &m, from);
-    surface_mesh_free(&m);
+    if (s == OK) s = list_files(format_of(path), path, mesh->albedo.data != NULL, &files);
+    if (s == OK) s = format_of(path)->write(path, mesh);
+    if (s == OK && written) {
+        add_sizes(&files);
+        *written = files;
+        return s;
+    }
+    merlin_files_free(&files);
     return s;
 }

@@ -11,6 +11,7 @@
 
 #include "base/file.h"
 #include "base/json/json_put.h"
+#include "base/vec.h"
 #include "image/write/write.h"
 #include "mesh/write/mesh_formats.h"
 
@@ -45,9 +46,10 @@ static int add_part(glb *g, part p)
     return g->count++;
 }
 
-static vec3 vertex_normal(const surface_mesh *m, size_t v)
+/* Returns the normals to which the normal map is relative, or the only ones. */
+static float *base_normals(const merlin_mesh *m)
 {
-    return vec3_of(m->normal + 3 * v);
+    return m->face_normals ? m->face_normals : m->normals;
 }
 
 /* Returns the direction to the right, made perpendicular to the normal. */
@@ -57,19 +59,19 @@ static vec3 tangent_of(vec3 n)
     return vec3_dot(t, t) > (real)0.5 ? t : vec3_make(0, 0, -1);
 }
 
-static status add_tangents(glb *g, const surface_mesh *m)
+static status add_tangents(glb *g, const merlin_mesh *m)
 {
-    g->tangent = malloc(4 * m->vertices * sizeof *g->tangent);
-    if (!g->tangent) return fail(MERLIN_NO_MEMORY, "no memory for a mesh of %zu vertices", m->vertices);
-    for (size_t v = 0; v < m->vertices; v++) {
-        vec3 t = tangent_of(vertex_normal(m, v));
+    g->tangent = malloc(4 * m->vertex_count * sizeof *g->tangent);
+    if (!g->tangent) return fail(MERLIN_NO_MEMORY, "no memory for a mesh of %zu vertices", m->vertex_count);
+    for (size_t v = 0; v < m->vertex_count; v++) {
+        vec3 t = tangent_of(vec3_of(base_normals(m) + 3 * v));
         float *to = g->tangent + 4 * v;
         vec3_put(t, to);
         to[3] = 1;
     }
     g->tangent_part = add_part(g, (part){.data = g->tangent,
-                                         .size = 4 * m->vertices * sizeof(float),
-                                         .count = m->vertices,
+                                         .size = 4 * m->vertex_count * sizeof(float),
+                                         .count = m->vertex_count,
                                          .type = "VEC4",
                                          .component = FLOAT,
                                          .target = ARRAY_BUFFER});
@@ -77,24 +79,24 @@ static status add_tangents(glb *g, const surface_mesh *m)
 }
 
 /* Adds parts 0 to 3: positions with their bounds, normals, texture coordinates, triangles. */
-static void add_geometry(glb *g, const surface_mesh *m)
+static void add_geometry(glb *g, const merlin_mesh *m)
 {
-    size_t n = m->vertices;
-    part position = {m->position, 3 * n * sizeof(float), n, "VEC3", FLOAT, ARRAY_BUFFER, {0}, {0}, true};
+    const size_t n = m->vertex_count, corners = 3 * m->triangle_count;
+    part position = {m->positions, 3 * n * sizeof(float), n, "VEC3", FLOAT, ARRAY_BUFFER, {0}, {0}, true};
     for (int c = 0; c < 3; c++) {
-        position.low[c] = position.high[c] = m->position[c];
+        position.low[c] = position.high[c] = m->positions[c];
         for (size_t v = 1; v < n; v++) {
-            float x = m->position[3 * v + (size_t)c];
+            float x = m->positions[3 * v + (size_t)c];
             if (x < position.low[c]) position.low[c] = x;
             if (x > position.high[c]) position.high[c] = x;
         }
     }
     add_part(g, position);
-    add_part(g, (part){m->normal, 3 * n * sizeof(float), n, "VEC3", FLOAT, ARRAY_BUFFER, {0}, {0}, false});
-    add_part(g, (part){m->texture, 2 * n * sizeof(float), n, "VEC2", FLOAT, ARRAY_BUFFER, {0}, {0}, false});
-    add_part(g, (part){m->index,
-                       3 * m->triangles * sizeof *m->index,
-                       3 * m->triangles,
+    add_part(g, (part){base_normals(m), 3 * n * sizeof(float), n, "VEC3", FLOAT, ARRAY_BUFFER, {0}, {0}, false});
+    add_part(g, (part){m->uvs, 2 * n * sizeof(float), n, "VEC2", FLOAT, ARRAY_BUFFER, {0}, {0}, false});
+    add_part(g, (part){m->triangles,
+                       corners * sizeof *m->triangles,
+                       corners,
                        "SCALAR",
                        UNSIGNED_INT,
                        ELEMENT_ARRAY_BUFFER,
@@ -122,39 +124,36 @@ static status png_bytes(const char *beside, const img *picture, img_encoding enc
 
 static status add_albedo(glb *g, const char *path, const img *albedo)
 {
-    img color = {0};
     size_t size = 0;
-    status s = mesh_albedo(albedo, &color);
-    if (s == OK) s = png_bytes(path, &color, IMG_SRGB8, &g->albedo, &size);
-    img_free(&color);
+    status s = png_bytes(path, albedo, IMG_SRGB8, &g->albedo, &size);
     if (s == OK) g->albedo_part = add_part(g, (part){.data = g->albedo, .size = size});
     return s;
 }
 
-static void fill_normal_map(const surface_mesh *m, const mesh_source *from, img *map)
+static void fill_normal_map(const merlin_mesh *m, img *map)
 {
     size_t count = (size_t)map->width * (size_t)map->height;
     for (size_t i = 0; i < count; i++) {
         map->data[3 * i] = map->data[3 * i + 1] = 0.5f;
         map->data[3 * i + 2] = 1;
     }
-    for (size_t v = 0; v < m->vertices; v++) {
-        vec3 n = vertex_normal(m, v), t = tangent_of(n), b = vec3_cross(n, t);
-        vec3 wanted = surface_mesh_normal(m, from, v);
-        float *to = map->data + 3 * (size_t)m->pixel[v];
+    for (size_t v = 0; v < m->vertex_count; v++) {
+        vec3 n = vec3_of(base_normals(m) + 3 * v), t = tangent_of(n), b = vec3_cross(n, t);
+        vec3 wanted = vec3_of(m->normals + 3 * v);
+        float *to = map->data + 3 * (size_t)m->pixels[v];
         to[0] = 0.5f * (float)vec3_dot(wanted, t) + 0.5f;
         to[1] = 0.5f * (float)vec3_dot(wanted, b) + 0.5f;
         to[2] = 0.5f * (float)vec3_dot(wanted, n) + 0.5f;
     }
 }
 
-static status add_normal_map(glb *g, const char *path, const surface_mesh *m, const mesh_source *from)
+static status add_normal_map(glb *g, const char *path, const merlin_mesh *m)
 {
     img map = {0};
     size_t size = 0;
-    status s = img_new(&map, from->normal->width, from->normal->height, 3);
+    status s = img_new(&map, m->width, m->height, 3);
     if (s != OK) return s;
-    fill_normal_map(m, from, &map);
+    fill_normal_map(m, &map);
     s = png_bytes(path, &map, IMG_LINEAR8, &g->normal, &size);
     img_free(&map);
     if (s == OK) g->normal_part = add_part(g, (part){.data = g->normal, .size = size});
@@ -332,20 +331,19 @@ static status assemble(const char *path, const glb *g)
     return s;
 }
 
-status mesh_write_glb(const char *path, const surface_mesh *m, const mesh_source *from)
+status mesh_write_glb(const char *path, const merlin_mesh *m)
 {
-    if (m->triangles == 0)
+    if (m->triangle_count == 0)
         return fail(MERLIN_BAD_INPUT,
                     "cannot write %s: the surface has no triangle; its mask is too thin, or depth jumps everywhere",
                     path);
     glb g = {.albedo_part = -1, .normal_part = -1, .roughness_part = -1, .tangent_part = -1, .scale = 1};
-    int longest = from->depth->width > from->depth->height ? from->depth->width : from->depth->height;
-    if (!pinhole_is_near(&from->camera)) g.scale = 1.0 / longest; /* positions are in pixels */
+    if (m->scale > 0) g.scale = m->scale;
     add_geometry(&g, m);
-    status s = from->normal ? add_tangents(&g, m) : OK;
-    if (s == OK && from->albedo) s = add_albedo(&g, path, from->albedo);
-    if (s == OK && from->normal) s = add_normal_map(&g, path, m, from);
-    if (s == OK && from->roughness) s = add_roughness(&g, path, from->roughness);
+    status s = m->face_normals ? add_tangents(&g, m) : OK;
+    if (s == OK && m->albedo.data) s = add_albedo(&g, path, &m->albedo);
+    if (s == OK && m->face_normals) s = add_normal_map(&g, path, m);
+    if (s == OK && m->roughness.data) s = add_roughness(&g, path, &m->roughness);
     if (s == OK) s = assemble(path, &g);
     free(g.tangent);
     free(g.albedo);

@@ -18,8 +18,7 @@ static char *with_ending(const char *path, const char *ending)
 }
 
 typedef struct obj {
-    const surface_mesh *mesh;
-    const mesh_source *from;
+    const merlin_mesh *mesh;
     const char *material;
 } obj;
 
@@ -36,10 +35,9 @@ static char *put_numbers(char *to, const char *kind, const double *number, int c
 
 static void print_vertex(FILE *f, const obj *o, size_t v)
 {
-    const float *p = o->mesh->position + 3 * v, *t = o->mesh->texture + 2 * v;
-    vec3 n = surface_mesh_normal(o->mesh, o->from, v);
+    const float *p = o->mesh->positions + 3 * v, *t = o->mesh->uvs + 2 * v, *n = o->mesh->normals + 3 * v;
     const double place[] = {(double)p[0], (double)p[1], (double)p[2]}, texture[] = {(double)t[0], 1 - (double)t[1]};
-    const double normal[] = {(double)n.x, (double)n.y, (double)n.z};
+    const double normal[] = {(double)n[0], (double)n[1], (double)n[2]};
     char lines[9 * DECIMAL_ROOM], *end = put_numbers(lines, "v", place, 3, 7);
     end = put_numbers(end, "vt", texture, 2, 7);
     end = put_numbers(end, "vn", normal, 3, 5);
@@ -62,21 +60,12 @@ static void print_triangle(FILE *f, const uint32_t *corner)
 static void print_mesh(FILE *f, const void *context)
 {
     const obj *o = context;
-    const surface_mesh *m = o->mesh;
+    const merlin_mesh *m = o->mesh;
     fprintf(f, "# written by merlin\nmtllib %s\nusemtl surface\n", file_name_of(o->material));
-    for (size_t v = 0; v < m->vertices; v++)
+    for (size_t v = 0; v < m->vertex_count; v++)
         print_vertex(f, o, v);
-    for (size_t t = 0; t < m->triangles; t++)
-        print_triangle(f, m->index + 3 * t);
-}
-
-static status write_texture(const char *path, const img *albedo)
-{
-    img color = {0};
-    status s = mesh_albedo(albedo, &color);
-    if (s == OK) s = img_write_png(path, &color, IMG_SRGB8);
-    img_free(&color);
-    return s;
+    for (size_t t = 0; t < m->triangle_count; t++)
+        print_triangle(f, m->triangles + 3 * t);
 }
 
 static status write_material(const char *path, const char *texture)
@@ -95,23 +84,22 @@ static status write_material(const char *path, const char *texture)
 enum { TEXTURE, MATERIAL, MESH, FILES };
 
 /* Writes all files under temporary names, those that the OBJ refers to first. */
-static status write_aside(const char *const path[FILES], char *aside[FILES], const surface_mesh *m,
-                          const mesh_source *from)
+static status write_aside(const char *const path[FILES], char *aside[FILES], const merlin_mesh *m)
 {
+    const bool textured = m->albedo.data != NULL;
     status s = OK;
-    for (int i = from->albedo ? TEXTURE : MATERIAL; s == OK && i < FILES; i++)
+    for (int i = textured ? TEXTURE : MATERIAL; s == OK && i < FILES; i++)
         s = file_temporary(path[i], &aside[i]);
-    if (s == OK && from->albedo) s = write_texture(aside[TEXTURE], from->albedo);
-    if (s == OK) s = write_material(aside[MATERIAL], from->albedo ? path[TEXTURE] : NULL);
-    return s == OK ? file_print(aside[MESH], print_mesh, &(obj){m, from, path[MATERIAL]}) : s;
+    if (s == OK && textured) s = img_write_png(aside[TEXTURE], &m->albedo, IMG_SRGB8);
+    if (s == OK) s = write_material(aside[MATERIAL], textured ? path[TEXTURE] : NULL);
+    return s == OK ? file_print(aside[MESH], print_mesh, &(obj){m, path[MATERIAL]}) : s;
 }
 
-status mesh_write_obj(const char *path, const surface_mesh *m, const mesh_source *from)
+status mesh_write_obj(const char *path, const merlin_mesh *m)
 {
     char *material = with_ending(path, ".mtl"), *texture = with_ending(path, ".png"), *aside[FILES] = {NULL};
     const char *const paths[FILES] = {texture, material, path};
-    status s =
-        material && texture ? write_aside(paths, aside, m, from) : fail(MERLIN_NO_MEMORY, "no memory for file names");
+    status s = material && texture ? write_aside(paths, aside, m) : fail(MERLIN_NO_MEMORY, "no memory for file names");
     for (int i = 0; i < FILES; i++) {
         if (!aside[i]) continue;
         if (s == OK) {
