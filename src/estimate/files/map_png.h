@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Maps as 16-bit PNG for people and other programs, black beside the object.
+/* Maps as 16-bit PNG for people and other programs, black outside the object.
  *
  *     status s = map_write_normals("normal.png", &normal, &mask);
  *     if (s == OK) s = map_write_depths("depth.png", &depth, &mask);
@@ -9,10 +9,10 @@
 
 #include "image/image.h"
 
-/* (n + 1) / 2; normal: 3 channels, mask: 1, above 0 on the object. */
+/* Writes (n + 1) / 2; normal: 3 channels, mask: 1, above 0 on the object. */
 status map_write_normals(const char *path, const img *normal, const img *mask);
-/* Near is bright: depths from the nearest to the farthest that is half covered at least become 1 down to 0.05. depth: 1
- * channel, of any unit and sign. */
+/* Writes depths with near ones bright: those of pixels covered by half or more, nearest to farthest, become 1 down to
+ * 0.05. depth: 1 channel, of any unit and sign. */
 status map_write_depths(const char *path, const img *depth, const img *mask);
 
 #endif

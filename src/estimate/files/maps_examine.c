@@ -10,19 +10,20 @@
 #include "estimate/relight/maps_surface.h"
 
 enum { MOST_LAYERS = 16 };
-/* Shares of the object: of a tenth a map is another than it says; of a hundredth it is worth a word. */
+/* Shares of the object's pixels that are out of range: with a tenth the map is something else, with a hundredth there
+ * is a warning. */
 static const double MUCH = 0.1, WORTH_A_WORD = 0.01;
 
-/* ---- what each map can be ---- */
+/* ---- valid ranges ---- */
 
 typedef struct range {
-    const char *prefix;    /* channels' names begin so */
-    float low, high;       /* values beyond are clamped later on */
-    float lowest, highest; /* values beyond are none of these maps' at all */
+    const char *prefix;    /* prefix of the channels' names */
+    float low, high;       /* range outside of which values are clamped later */
+    float lowest, highest; /* range outside of which values cannot be of such a map */
     const char *words;
 } range;
 
-/* Ranges of an estimate's maps; they allow for half's rounding. */
+/* Ranges of an estimate's maps, with room for the rounding of half floats. */
 static const range of_estimates[] = {
     {"albedo.", -0.01f, 1.01f, -0.5f, 2, "the linear albedo in [0, 1]"},
     {"roughness.", 0.029f, 1.001f, -0.1f, 1.5f, "the roughness in [0.03, 1]"},
@@ -31,7 +32,7 @@ static const range of_estimates[] = {
      "camera"},
     {NULL, 0, 0, 0, 0, NULL},
 };
-/* Albedo and depth of a capture are in any unit; depth of one seen from afar has any zero. */
+/* Ranges of a capture's maps: albedo and depth are in any unit, and depth from distant lights has any zero. */
 static const range of_captures[] = {
     {"albedo.", -FLT_MAX, FLT_MAX, 0, FLT_MAX, "the linear albedo, which is not negative"},
     {NULL, 0, 0, 0, 0, NULL},
@@ -51,10 +52,10 @@ static const range *range_of(const range *table, const char *name)
 
 /* ---- one channel ---- */
 
-/* The findings of one channel. */
+/* Counts of one channel's values. */
 typedef struct tally {
-    size_t infinite, first; /* pixels that are not finite, and the first of them */
-    size_t off, far;        /* the object's pixels beyond a range, and far beyond */
+    size_t infinite, first; /* number of pixels that are not finite, and the first of them */
+    size_t off, far;        /* number of the object's pixels out of range, and far out of range */
     float lowest, highest;
 } tally;
 
@@ -64,7 +65,7 @@ typedef struct examination {
     size_t count;
     bool captured;
     const merlin_maps *maps;
-    size_t object; /* its pixels */
+    size_t object; /* number of the object's pixels */
     tally tallies[MOST_LAYERS];
 } examination;
 
@@ -106,7 +107,7 @@ static status refuse_infinite(const examination *e, const char *name, const tall
                 e->path, name, t->infinite, t->infinite == 1 ? "" : "s", t->first % width, t->first / width);
 }
 
-static status judge_layer(const examination *e, size_t i)
+static status check_layer(const examination *e, size_t i)
 {
     const char *name = e->layers[i].name;
     const tally *t = &e->tallies[i];
@@ -123,7 +124,7 @@ static status judge_layer(const examination *e, size_t i)
 
 static status examine_mask(examination *e)
 {
-    const float slack = 0.5f; /* enlarging by an editor overshoots */
+    const float slack = 0.5f; /* room for overshoot of an editor's resizing */
     const img mask = e->maps->mask;
     tally t = {.lowest = FLT_MAX, .highest = -FLT_MAX};
     for (size_t i = 0; i < img_value_count(&mask); i++) {
@@ -144,7 +145,8 @@ static status examine_mask(examination *e)
 /* ---- normals ---- */
 
 typedef struct normals {
-    size_t none, first, off, coded, away; /* without length, the first of them, not unit, colours, z below 0 */
+    size_t none, first, off, coded, away; /* numbers of normals without length, not unit, coded as colours, with z below
+                                             0, and the first without length */
 } normals;
 
 static bool is_nearly_unit(vec3 v)
@@ -159,7 +161,7 @@ static bool is_color(vec3 n)
     return fminf(fminf(n.x, n.y), n.z) > -0.01f && fmaxf(fmaxf(n.x, n.y), n.z) < 1.01f && is_nearly_unit(decoded);
 }
 
-/* Makes a normal unit where half's rounding is not all that it lacks. */
+/* Makes a normal unit if it differs by more than the rounding of half floats. */
 static void straighten(float *values)
 {
     const vec3 n = vec3_of(values);
@@ -190,14 +192,14 @@ static normals examine_normals(const examination *e)
     return found;
 }
 
-static status judge_normals(const examination *e, const normals *n)
+static status check_normals(const examination *e, const normals *n)
 {
     const double object = (double)e->object;
     const size_t width = (size_t)e->maps->mask.width;
     if ((double)n->coded > 0.5 * object)
         return fail(MERLIN_BAD_INPUT, "%s: its normals seem to be stored as colours, (n + 1)/2: store n itself",
                     e->path);
-    /* a solver may leave a pixel without */
+    /* a solver may leave pixels without a normal */
     if ((double)n->none > (e->captured ? WORTH_A_WORD * object : 0))
         return fail(MERLIN_BAD_INPUT,
                     "%s: the normal has no length in %zu of the object's %zu pixels, the first at %zu,%zu (column, "
@@ -211,7 +213,7 @@ static status judge_normals(const examination *e, const normals *n)
     return OK;
 }
 
-/* ---- all of it ---- */
+/* ---- the whole ---- */
 
 static float share_off(const examination *e, const char *prefix)
 {
@@ -221,7 +223,7 @@ static float share_off(const examination *e, const char *prefix)
     return (float)((double)most / (double)e->object);
 }
 
-static void doubt(const examination *e, const normals *n, merlin_maps *maps)
+static void record_doubts(const examination *e, const normals *n, merlin_maps *maps)
 {
     maps->mended.albedo = share_off(e, "albedo.");
     maps->mended.roughness = share_off(e, "roughness.");
@@ -247,11 +249,11 @@ status maps_examine(const char *path, const exr_target *layers, size_t count, me
     status s = examine_mask(&e);
     if (s == OK) s = parallel_try(count, examine_layer, &e);
     for (size_t i = 0; i < count && s == OK; i++)
-        s = judge_layer(&e, i);
+        s = check_layer(&e, i);
     if (s != OK) return s;
     const normals n = examine_normals(&e);
-    s = judge_normals(&e, &n);
-    if (s == OK) doubt(&e, &n, maps);
+    s = check_normals(&e, &n);
+    if (s == OK) record_doubts(&e, &n, maps);
     return s;
 }
 
@@ -259,10 +261,10 @@ status maps_examine(const char *path, const exr_target *layers, size_t count, me
 
 status maps_check_crop(const char *path, bool sized, const merlin_maps *maps)
 {
-    const float least_share = 0.55f; /* of the crop's side; crop_around gives it 0.6 or more */
+    const float least_share = 0.55f; /* share of the crop's side; crop_around makes it 0.6 or more */
     const img mask = maps->mask;
     const crop_square c = crop_of(maps);
-    const int slack = 2 + c.side / 50; /* the mask was rounded since then */
+    const int slack = 2 + c.side / 50; /* in pixels, as the mask was rounded in the meantime */
     if (crop_holds(&mask, c, slack, sized ? 0 : least_share)) return OK;
     return fail(MERLIN_BAD_INPUT,
                 "%s: the object is not where its merlinCrop (%d, %d and a side of %d) has it: resize, crop or turn the "

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* maps.exr, both ways. Beside the maps it holds the photograph, so that a folder can be relit by the network too. */
+/* Reads and writes maps.exr. It also contains the photograph, so that the network, too, can relight a folder. */
 #include <assert.h>
 #include <math.h>
 #include <stddef.h>
@@ -21,10 +21,10 @@
 #include "model/model.h"
 
 enum { CHANNELS = 12, IMAGES = 6, PHOTO = 5 };
-/* Sizes beyond NETWORK_SIZE stand in files of versions that let the network see so much. */
+/* Largest network size in a file: earlier versions allowed sizes beyond NETWORK_SIZE. */
 enum { LARGEST_WRITTEN = 1024 };
 
-/* Name, image's place in maps_images, channel. */
+/* Name of a channel, its image's index in maps_images, and the channel there. */
 typedef struct layer {
     const char *name;
     int image, channel;
@@ -37,13 +37,13 @@ static const layer layers[CHANNELS] = {
 };
 
 static const int image_channels[IMAGES] = {3, 3, 1, 1, 1, 3};
-/* What photometric stereo does not find. */
+/* Images that photometric stereo does not find. */
 static const bool of_photographs[IMAGES] = {[2] = true, [PHOTO] = true};
 
-/* A photograph of floats may be in a unit that half has no room or no digits for. */
+/* Tells whether a photograph of floats is in a unit for which half has too little range or precision. */
 static bool outgrows_half(const merlin_image *photo)
 {
-    const float dim = 1.0f / 64; /* half's digits go below 2^-14 */
+    const float dim = 1.0f / 64; /* half loses precision below 2^-14 */
     size_t count = 3 * (size_t)photo->width * (size_t)photo->height;
     float largest = 0;
     for (size_t i = 0; i < count; i++)
@@ -51,13 +51,13 @@ static bool outgrows_half(const merlin_image *photo)
     return largest > HALF_LARGEST || largest < dim;
 }
 
-/* merlinLight, where a model knows the light: the fields of merlin_found_light behind `known`, in their order. */
+/* merlinLight, where a model knows the light: the fields of merlin_found_light after `known`, in their order. */
 enum { LIGHT_NUMBERS = 36, LIGHT_BEGINS = offsetof(merlin_found_light, flash) };
 static_assert(LIGHT_BEGINS + LIGHT_NUMBERS * sizeof(float) == sizeof(merlin_found_light),
               "what a file holds of a light is all that stands behind `known`");
-/* Attributes that every file has, and all of them. */
+/* Numbers of attributes: in every file, and at most. */
 enum { ALWAYS = 8, MOST_ATTRIBUTES = ALWAYS + 2 };
-/* More is no light that a photograph can show. */
+/* Largest value of a light that a photograph can show. */
 static const float MOST_LIGHT = 1e6f;
 
 static exr_attribute attribute_of_light(const merlin_found_light *l)
@@ -82,7 +82,7 @@ status maps_write_exr(const merlin_maps *maps, const char *path)
     square.values[2] = (float)maps->crop.side;
     exr_attribute environment = {.name = "merlinEnvironment", .count = 27};
     memcpy(environment.values, maps->environment, sizeof maps->environment);
-    exr_attribute lens = {.name = "merlinLens", .count = 3}; /* field of view and slant; 0: not known */
+    exr_attribute lens = {.name = "merlinLens", .count = 3}; /* field of view and slant; 0: unknown */
     lens.values[0] = maps->fov;
     lens.values[1] = maps->slant[0];
     lens.values[2] = maps->slant[1];
@@ -102,14 +102,14 @@ status maps_write_exr(const merlin_maps *maps, const char *path)
     return exr_write(path, maps->albedo.width, maps->albedo.height, channels, CHANNELS, attributes, count);
 }
 
-/* ---- what a file says of its maps ---- */
+/* ---- attributes ---- */
 
 exr_attribute maps_picture_size(int width, int height)
 {
     return (exr_attribute){.name = "merlinPicture", .values = {(float)width, (float)height}, .count = 2};
 }
 
-/* Takes numbers that must be there. */
+/* Reads numbers that must be present. */
 static status take_numbers(const exr_file *f, const char *path, const char *name, float *values, int count)
 {
     if (exr_get_numbers(f, name, values, count)) return OK;
@@ -119,7 +119,7 @@ static status take_numbers(const exr_file *f, const char *path, const char *name
                       name);
 }
 
-/* Takes numbers that files of older versions do not have. */
+/* Reads numbers that files of older versions do not have. */
 static status take_if_there(const exr_file *f, const char *path, const char *name, float *values, int count)
 {
     return exr_has_attribute(f, name) ? take_numbers(f, path, name, values, count) : OK;
@@ -218,9 +218,10 @@ static status read_attributes(const exr_file *f, const char *path, merlin_maps *
     return OK;
 }
 
-/* ---- its pixels ---- */
+/* ---- pixels ---- */
 
-/* Refuses a file of another size than was written: the crop, focal lengths and depths in pixels are of that one. */
+/* Refuses a file whose size differs from the one written, to which the crop, focal lengths and depths in pixels refer.
+ */
 static status check_picture(const exr_file *f, const char *path)
 {
     const exr_frame seen = exr_display(f);
@@ -238,7 +239,7 @@ static status check_picture(const exr_file *f, const char *path)
     return !trimmed || fits ? OK : fail(MERLIN_BAD_INPUT, "%s: no photograph is of its display window's size", path);
 }
 
-/* Some programs keep what is not black alone, and say where in the picture it was. */
+/* Places the images in the picture: some programs store only the part that is not black, and its position. */
 static status place_images(const exr_file *f, merlin_image *const images[IMAGES])
 {
     const exr_frame seen = exr_display(f);
@@ -263,8 +264,8 @@ static status new_images(const exr_file *f, merlin_image *const images[IMAGES])
     return s;
 }
 
-/* Lists the channels that are in the file. */
-static size_t aim(bool photographed, merlin_image *const images[IMAGES], exr_target targets[CHANNELS])
+/* Lists the channels that the file has. */
+static size_t list_channels(bool photographed, merlin_image *const images[IMAGES], exr_target targets[CHANNELS])
 {
     size_t count = 0;
     for (int i = 0; i < CHANNELS; i++)
@@ -281,10 +282,10 @@ status maps_read_layers(exr_file *f, const char *path, bool photographed, merlin
     exr_target targets[CHANNELS];
     status s = check_picture(f, path);
     if (s == OK) s = new_images(f, images);
-    if (s == OK) s = exr_read(f, targets, aim(photographed, images, targets));
+    if (s == OK) s = exr_read(f, targets, list_channels(photographed, images, targets));
     if (s == OK) s = place_images(f, images);
     if (s != OK) return s;
-    return maps_examine(path, targets, aim(photographed, images, targets), maps);
+    return maps_examine(path, targets, list_channels(photographed, images, targets), maps);
 }
 
 void maps_tidy(merlin_maps *maps)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The files that maps are written to and read from. */
+/* The files to which maps are written and from which they are read. */
 #ifndef MERLIN_ESTIMATE_FILES_MAPS_FILES_H
 #define MERLIN_ESTIMATE_FILES_MAPS_FILES_H
 
@@ -7,13 +7,14 @@
 #include "merlin/merlin.h"
 
 status maps_write_exr(const merlin_maps *maps, const char *path);
-/* Makes the attribute of maps.exr that tells, after an editor has had it, whether it still is of the size it was. */
+/* Makes the attribute of maps.exr that reveals whether an editor has changed its size. */
 exr_attribute maps_picture_size(int width, int height);
-/* All maps of the file's size and what it holds of them; roughness and photo, unless photographed, are not looked for
- * and stay zero. MERLIN_BAD_INPUT for maps that nothing can be made of (maps_examine.h); path is for messages. After a
- * failure, too, merlin_maps_free. */
+/* Reads all maps, at the file's size; roughness and photo are not read and stay zero unless photographed.
+ * MERLIN_BAD_INPUT for unusable maps (maps_examine.h); path is for messages. Call merlin_maps_free after a failure,
+ * too. */
 status maps_read_layers(exr_file *f, const char *path, bool photographed, merlin_maps *maps);
-/* Maps as the inside promises them: half floats are not quite unit normals, and anybody may have edited the file. */
+/* Restores the properties that other functions rely on: half floats are not exactly unit normals, and files may have
+ * been edited. */
 void maps_tidy(merlin_maps *maps);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* report.json: what was done to a photograph, and the maps' statistics. */
+/* report.json: how a photograph was processed, and the maps' statistics. */
 #include <cJSON.h>
 #include <math.h>
 
@@ -24,7 +24,7 @@ static void add(range *r, double x)
     r->count++;
 }
 
-/* Of the pixels that are object, one channel of a map. */
+/* Returns the range of one channel of a map over the object's pixels. */
 static range range_of(const merlin_maps *maps, const merlin_image *map, int channel)
 {
     range r = {0};
@@ -87,7 +87,7 @@ static void put_timing(cJSON *root, const merlin_timing *t)
     json_put_number(o, "upsample", t->upsample);
 }
 
-/* Nine coefficients of three channels. */
+/* Adds nine coefficients of three channels. */
 static void put_environment(cJSON *root, const merlin_maps *maps)
 {
     if (!maps->has_environment) return;
@@ -100,7 +100,7 @@ static void put_environment(cJSON *root, const merlin_maps *maps)
     }
 }
 
-/* The lens of the crop, and where the lens's axis is. */
+/* Adds the lens of the crop, and the position of its axis. */
 static void put_lens(cJSON *root, const merlin_maps *maps)
 {
     json_put_text(root, "lens", maps->fov > 0 ? "known" : "assumed");
@@ -117,7 +117,7 @@ static void put_numbers(cJSON *to, const char *name, const float *values, int co
         json_append(all, cJSON_CreateNumber((double)values[i]));
 }
 
-/* What a model of any light sees. */
+/* Adds the light that a model of any light estimated. */
 static void put_light(cJSON *root, const merlin_found_light *l)
 {
     char words[MERLIN_LIGHT_WORDS];
@@ -137,8 +137,8 @@ static void put_light(cJSON *root, const merlin_found_light *l)
     put_numbers(light, "rest", &l->rest[0][0], 27);
 }
 
-/* A camera gives a flash the strength that the distance asks for; how strong other light is, how bright an object looks
- * in it does not tell. */
+/* Tells whether the scale of albedo is known. A camera adapts a flash's strength to the distance, while an object's
+ * brightness does not reveal the strength of other light. */
 static bool is_scale_known(const merlin_maps *maps)
 {
     return !maps->light.known || found_light_share(&maps->light).flash >= 0.5f;

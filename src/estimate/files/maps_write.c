@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* merlin_maps_write: a folder with everything, or nothing. */
+/* merlin_maps_write: writes a folder with all files, or nothing. */
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdbool.h>
@@ -64,7 +64,7 @@ static status write_normal(const job *j, const char *path)
     return map_write_normals(path, &normal, &mask);
 }
 
-/* Which depths these are is in report.json: statistics.depth. */
+/* Writes depths; report.json (statistics.depth) has their range. */
 static status write_depth(const job *j, const char *path)
 {
     img depth = j->maps->depth, mask = j->maps->mask;
@@ -96,7 +96,7 @@ typedef struct output {
     status (*write)(const job *j, const char *path);
 } output;
 
-/* The slowest first, so that two processors end together. */
+/* Output files, the slowest first, so that two processors finish together. */
 static const output outputs[] = {
     {"overview.png", write_overview},   {"maps.exr", write_exr},
     {"normal.png", write_normal},       {"reconstruction.png", write_reconstruction},
@@ -108,7 +108,7 @@ enum { OUTPUTS = sizeof outputs / sizeof outputs[0] };
 
 typedef struct batch {
     job job;
-    pthread_t owner; /* the thread that tells */
+    pthread_t owner; /* thread that reports progress */
     atomic_int done;
     staging *staging; /* NULL: into `folder` itself */
     const char *folder;
@@ -157,7 +157,7 @@ static status write_maps(merlin_model *model, const merlin_maps *maps, const mer
     b->owner = pthread_self();
     b->watch = (watch){by->progress, by->progress_context, by->stop};
     watch_tell(&b->watch, "writing", 0);
-    /* before the files are written side by side, because the network uses every processor itself */
+    /* before the files are written in parallel, as the network uses all processors itself */
     network *n = model_network(model, maps, MERLIN_BY_BRDF);
     status s = overview_new(n, maps, &b->job.overview);
     if (by->last) network_release(n);

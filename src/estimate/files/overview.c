@@ -18,7 +18,7 @@ void overview_free(overview *o)
         img_free(images[i]);
 }
 
-/* What the sheet shows as sRGB is the value itself. */
+/* Makes a picture whose sRGB code on the sheet is the value itself. */
 static status show_values(const img *values, img *out)
 {
     status s = img_copy(out, values);
@@ -29,7 +29,7 @@ static status show_values(const img *values, img *out)
     return OK;
 }
 
-/* In the size and exposure of the photograph beside it. */
+/* Resizes the reconstruction, with the exposure of the photograph next to it. */
 static status show_reconstruction(const merlin_maps *maps, float white, img *out)
 {
     img whole = maps->reconstruction, mask = maps->mask, part = {0};
@@ -48,7 +48,7 @@ static status make(network *n, const merlin_maps *maps, overview *o)
     if (s == OK && !maps->reconstruction.data)
         s = fail(MERLIN_WRONG_USE, "maps that were read from a folder have no reconstruction to show");
     if (s != OK) return s;
-    /* an underexposed photograph is shown as it should have been exposed */
+    /* an underexposed photograph is shown at the correct exposure */
     float white = o->relighter.white;
     o->relighter.white = EXPOSURE_WHITE;
     size_t count = 3 * (size_t)maps->size * (size_t)maps->size;

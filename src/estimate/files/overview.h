@@ -14,7 +14,7 @@
 #include "estimate/relight/relighter.h"
 #include "image/write/figure.h"
 
-/* The photograph first. */
+/* Number of tiles; the photograph is the first. */
 enum { OVERVIEW_TILES = 8 };
 
 typedef struct overview {
@@ -22,10 +22,10 @@ typedef struct overview {
     img normal, roughness, depth, reconstruction, left, right;
 } overview;
 
-/* Of maps as merlin_estimate gives them. */
+/* Makes the overview of maps from merlin_estimate. */
 status overview_new(network *n, const merlin_maps *maps, overview *out);
 void overview_free(overview *o);
-/* Borrowed from o. */
+/* Lists the tiles, whose pictures are borrowed from o. */
 void overview_tiles(const overview *o, figure_tile tiles[OVERVIEW_TILES]);
 
 #endif

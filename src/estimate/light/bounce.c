@@ -4,11 +4,12 @@
 #include "image/resize.h"
 
 enum { FLASH, LIGHT, PLANES };
-/* Scales of the light that is followed; docs/notes/cast_shadows.md has what that is worth. */
+/* Radius of the surroundings whose light counts, as a fraction of the frame; docs/notes/cast_shadows.md has its effect.
+ */
 static const int FRAME_BY_RADIUS = 32;
 static const float DARK = 1e-6f;
 
-/* Both lights' brightness. */
+/* Sums the channels of the flash's light, and of the new light. */
 static status brightness(const img *direct_by_flash, const img *direct, const img *ambient, img *out)
 {
     status s = img_new(out, direct->width, direct->height, PLANES);

@@ -6,11 +6,11 @@
 #include "image/color.h"
 #include "optics/octahedron.h"
 
-/* The level that is cut up: 64 × 64 cells of three degrees. */
+/* Level of the map that is divided: 64 × 64 cells of three degrees. */
 enum { LEVEL = 3, SIDE = ENV_MAP_SIDE >> LEVEL, HALVINGS = 8 };
 static const float WHOLE = 4 * PI;
 
-/* Cells from here to before there. */
+/* A rectangle of cells; the end is exclusive. */
 typedef struct part {
     int x0, y0, x1, y1;
 } part;
@@ -24,7 +24,8 @@ static double weight_of(const img *cells, const part *p, float floor)
     return sum;
 }
 
-/* Across its longer side, where the halves weigh most alike; false for a single cell. */
+/* Halves a part across its longer side, where the weights of the halves are closest; returns false for a single cell.
+ */
 static bool halve(const img *cells, float floor, part *p, part *rest)
 {
     bool wide = p->x1 - p->x0 >= p->y1 - p->y0;

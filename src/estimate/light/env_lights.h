@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Surroundings as a few distant lights, many where they are bright: what shadows are cast by.
+/* An environment as a few distant lights, more of them where it is bright, to cast shadows.
  *
  *     env_light lights[ENV_LIGHTS_MOST];
  *     int count = env_lights(&env, lights);
  *
- * The sphere is halved again and again, each part where its light is halved (P. Debevec, A median cut algorithm for
- * light probe sampling, SIGGRAPH 2005 posters). Half of what counts is the light, the other half the solid angle, so
- * that a lamp does not leave the rest of a room to a handful of lights. */
+ * The sphere is halved repeatedly, each part where its light is halved (P. Debevec, A median cut algorithm for light
+ * probe sampling, SIGGRAPH 2005 posters). The weight is half light, half solid angle, so that a lamp does not leave
+ * only a few lights for the rest of a room. */
 #ifndef MERLIN_ESTIMATE_LIGHT_ENV_LIGHTS_H
 #define MERLIN_ESTIMATE_LIGHT_ENV_LIGHTS_H
 
@@ -15,12 +15,13 @@
 enum { ENV_LIGHTS_MOST = 256 };
 
 typedef struct env_light {
-    vec3 direction;    /* unit, toward it, turned as the map is */
-    vec3 power;        /* radiance times solid angle, whole */
-    float solid_angle; /* of its part of the sphere */
+    vec3 direction;    /* unit vector toward it, turned as the map is */
+    vec3 power;        /* radiance times solid angle of the whole part */
+    float solid_angle; /* solid angle of its part of the sphere */
 } env_light;
 
-/* How many there are: fewer than ENV_LIGHTS_MOST where nearly all comes from one point. */
+/* Finds the lights and returns their number, which is less than ENV_LIGHTS_MOST if nearly all light comes from one
+ * point. */
 int env_lights(const env_map *e, env_light lights[ENV_LIGHTS_MOST]);
 
 #endif

@@ -15,7 +15,7 @@ enum { WIDEST_MAP = 2 * ENV_MAP_SIDE };
 
 /* ---- the octahedron -------------------------------------------------------------------------------------------- */
 
-/* Beyond an edge of the square the octahedron goes on at the same edge, mirrored. */
+/* Returns a texel. Beyond an edge of the square the octahedron continues at the same edge, mirrored. */
 static const float *texel(const img *level, int x, int y)
 {
     int n = level->width;
@@ -61,7 +61,7 @@ static void collect(const collection *to, vec3 d, const float *radiance, float a
     to->angle[(size_t)row * (size_t)side + (size_t)column] += (double)angle;
 }
 
-/* Every texel of the map is cut into so many pieces a side that none is larger than a third of a cell. */
+/* Adds a row of the map. Each texel is divided into enough pieces that none is larger than a third of a cell. */
 static void collect_row(const collection *to, const img *map, int y)
 {
     float cell = sqrtf(4 * PI) / (float)to->sum->width;
@@ -78,7 +78,7 @@ static void collect_row(const collection *to, const img *map, int y)
     }
 }
 
-/* The mean of what was collected, so that an even sky stays even. */
+/* Divides by the solid angle collected, so that a constant sky stays constant. */
 static void average(const collection *c)
 {
     size_t cells = (size_t)c->sum->width * (size_t)c->sum->width;
@@ -129,7 +129,7 @@ status env_map_new(img *latlong, env_map *out)
     img map = {0};
     if (latlong->channels != 3) return fail(MERLIN_WRONG_USE, "an environment map needs 3 channels");
     img_zero_invalid(latlong);
-    /* no wider than what the octahedron resolves */
+    /* at most as wide as the octahedron resolves */
     int width = latlong->width < WIDEST_MAP ? latlong->width : WIDEST_MAP;
     int height = latlong->height < WIDEST_MAP / 2 ? latlong->height : WIDEST_MAP / 2;
     status s = img_resize(latlong, width, height, &map);
@@ -178,7 +178,7 @@ void env_map_scale(env_map *e, float factor)
 
 float env_map_mean(const env_map *e)
 {
-    /* band 0 is the mean times the root of the sphere's area */
+    /* band 0 is the mean times the square root of the sphere's area */
     return color_luminance(e->sh[0]) / sqrtf(4 * PI);
 }
 

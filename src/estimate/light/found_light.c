@@ -10,7 +10,8 @@
 #include "optics/sh.h"
 
 static const vec3 middle = {0, 0, -1};
-/* A lamp is that from this on; farther than so far, its light is parallel to any eye. */
+/* Least probability for a lamp to count; largest distance, beyond which its light is parallel; and the share of the
+ * flash from which on there is no other light. */
 static const float LEAST_SURE = 0.5f, FARTHEST = 20, FLASH_ALONE = 0.95f;
 
 void found_light_take(const float code[MODEL_LIGHTS], merlin_found_light *out)
@@ -53,16 +54,17 @@ bool found_light_lamp(const merlin_found_light *light, lamp *out)
     if (!light->known || !(vec3_length(toward) > 0)) return false;
     const float far = light->lamp_distance;
     *out = far > 0 ? lamp_at(vec3_fma(middle, far, toward)) : lamp_toward(toward);
-    /* as strong in the object's middle, wherever it stands */
+    /* the strength in the object's middle, whatever the distance */
     out->tint = vec3_scale(vec3_of(light->lamp_strength), far > 0 ? far * far : 1);
     return true;
 }
 
-/* ---- to relight by ---- */
+/* ---- lights to relight by ---- */
 
 enum { REST_WIDTH = 128, REST_HEIGHT = 64 };
 
-/* Draws the coefficients' radiance. Three bands of a bright sky may bring it below zero, which is dark. */
+/* Renders the radiance of the coefficients. The three bands of a bright sky may be negative somewhere, which becomes
+ * black. */
 static status picture_of_rest(const merlin_found_light *light, img *out)
 {
     status s = img_new(out, REST_WIDTH, REST_HEIGHT, 3);
@@ -133,7 +135,7 @@ void found_lights_turn(found_lights *l, float degrees)
     if (found_lights_rest(l)) env_map_turn(&l->rest, degrees);
 }
 
-/* ---- the photograph rebuilt ---- */
+/* ---- the photograph reconstructed ---- */
 
 static void add_tinted(const img *from, vec3 tint, img *to)
 {

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* The light that a model of any light sees in a photograph, and a surface under it.
+/* The light that a model of any light estimates from a photograph, and a surface lit by it.
  *
  *     found_light_take(estimation.lights, &maps.light);
- *     status s = found_light_add(&full, &maps.light, &visibility, &picture);      picture += that light's part
- *     s = found_light_stand(&maps.light, 90, &lights);                            turned, to relight maps by
+ *     status s = found_light_add(&full, &maps.light, &visibility, &picture);      picture += light reflected
+ *     s = found_light_stand(&maps.light, 90, &lights);                            the same light turned, to relight
+ * maps
  */
 #ifndef MERLIN_ESTIMATE_LIGHT_FOUND_LIGHT_H
 #define MERLIN_ESTIMATE_LIGHT_FOUND_LIGHT_H
@@ -14,38 +15,40 @@
 #include "merlin/merlin.h"
 #include "model/model.h"
 
-/* Takes the light from the network's code (model.h, MODEL_LIGHTS). A lamp that it is less than half sure of is none. */
+/* Decodes the light from the network's output (model.h, MODEL_LIGHTS). A lamp with a probability below one half is
+ * dropped. */
 void found_light_take(const float code[MODEL_LIGHTS], merlin_found_light *out);
 
-/* Shares of all light that arrives in the object's middle, in the mean of the channels: the lamp's wherever that
- * stands, and of the rest what reaches a surface that faces the camera. They add up to 1; zeros: nothing is known. */
+/* Shares of all light that arrives in the object's middle, averaged over the channels: the lamp's wherever it is, and
+ * of the rest what reaches a surface that faces the camera. They add up to 1; all zero if nothing is known. */
 typedef struct found_light_shares {
     float flash, lamp, rest;
 } found_light_shares;
 found_light_shares found_light_share(const merlin_found_light *light);
-/* Tells whether the flash's share is so large that what else there is may be a mistake. */
+/* Tells whether the flash's share is so large that the estimate of other light may be an error. */
 bool found_light_is_flash(const merlin_found_light *light);
 
-/* Makes the lamp as relighting has it, its tint the strength by channel; false where there is none. */
+/* Makes the lamp for relighting, with the strength by channel as its tint; returns false if there is none. */
 bool found_light_lamp(const merlin_found_light *light, lamp *out);
 
-/* The found light as relighting takes it. */
+/* The estimated light in the form that relighting uses. */
 typedef struct found_lights {
-    lamp lamps[2]; /* the flash and the lamp, as far as there are any */
-    int count;     /* of lamps */
-    int fixed;     /* those before this one, the flash, do not turn */
-    env_map rest;  /* surroundings of everything else's radiance; found_lights_rest tells whether there are any */
+    lamp lamps[2]; /* the flash and the lamp, if there are any */
+    int count;     /* number of lamps */
+    int fixed;     /* number of lamps that do not turn: the flash */
+    env_map rest;  /* environment of all other radiance; found_lights_rest tells whether there is any */
 } found_lights;
-/* Makes them of what was found, turned by so many degrees. MERLIN_BAD_INPUT where nothing is known or all is dark;
- * MERLIN_NO_MEMORY. rest is to be freed by env_map_free. */
+/* Makes the lights, turned by so many degrees. MERLIN_BAD_INPUT if nothing is known or all is dark; MERLIN_NO_MEMORY.
+ * Free rest with env_map_free. */
 status found_light_stand(const merlin_found_light *light, float turn, found_lights *out);
-/* Returns the surroundings, NULL where they are dark. */
+/* Returns the environment, or NULL if it is dark. */
 const env_map *found_lights_rest(const found_lights *l);
-/* Turns all but the flash further about the vertical as env_map_turn does it, the lamp about the object's middle. */
+/* Turns all but the flash further about the vertical, as env_map_turn does; the lamp turns about the object's middle.
+ */
 void found_lights_turn(found_lights *l, float degrees);
 
-/* Adds flash, lamp and the rest to out (3 channels, the surface's size). visibility: 1 channel, of any size, of the
- * lamp; without data it reaches all that faces it. MERLIN_NO_MEMORY. */
+/* Adds the light of flash, lamp and environment to out (3 channels, the surface's size). visibility: of the lamp, 1
+ * channel, any size; without data the lamp reaches everything that faces it. MERLIN_NO_MEMORY. */
 status found_light_add(const surface *s, const merlin_found_light *light, const img *visibility, img *out);
 
 #endif

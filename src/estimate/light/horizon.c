@@ -8,12 +8,12 @@
 #include "base/parallel.h"
 #include "optics/camera.h"
 
-/* Points a side at most: light from all around varies slowly. */
+/* Largest number of points per side, as light from all around varies slowly; bits per word; azimuths per quarter. */
 enum { MOST_SIDE = 256, BITS = 32, QUARTER = HORIZON_AZIMUTHS / 4 };
-/* How far behind the map is behind it, in pixels; the steps of a march, in shares of the way, one pixel at least; and
- * how surely an angle is known. Tried as those of shadow.c (docs/notes/environments.md). */
+/* Distance behind the map in pixels from which on a point is hidden; step of a march as a share of the distance, at
+ * least one pixel; and uncertainty of an angle. They were tuned like those of shadow.c (docs/notes/environments.md). */
 static const float MARGIN = 1, STRIDE = 0.06f, BORDER = 0.06f;
-/* Depth of what is not there. */
+/* Depth where there is no surface. */
 static const float NOTHING = 1e4f;
 
 /* ---- directions about a line of sight ---- */
@@ -25,12 +25,13 @@ typedef struct frame {
 static frame frame_of(vec3 ray)
 {
     vec3 view = vec3_scale(ray, -1);
-    /* lines of sight are within 75 degrees of the axis, so that x is never along them */
+    /* lines of sight are within 75 degrees of the axis, so that none is parallel to x */
     vec3 right = vec3_normalize(vec3_fma(vec3_make(1, 0, 0), -view.x, view));
     return (frame){view, right, vec3_cross(view, right)};
 }
 
-/* Half planes are numbered around a square instead of a circle: no angle is needed to find one. */
+/* Returns the direction of a half plane. They are numbered around a square instead of a circle, so that no angle is
+ * needed to find one. */
 static vec3 across_of(const frame *f, int azimuth)
 {
     static const float sign_x[] = {1, -1, -1, 1}, sign_y[] = {1, 1, -1, -1};
@@ -51,7 +52,7 @@ static float azimuth_of(float x, float y)
 typedef struct making {
     const shadow_occluder *occluder;
     camera eye;
-    img depth; /* NOTHING off the surface */
+    img depth; /* depth, NOTHING outside the surface */
     horizon *out;
 } making;
 
@@ -64,7 +65,7 @@ typedef struct marches {
     uint32_t closed[MOST_SIDE];
 } marches;
 
-/* A straight line in space along `across` is one in the picture. */
+/* Sets the line of a march: a straight line in space along `across` is a straight line in the picture. */
 static void aim(marches *m, int i, vec3 across)
 {
     float dx = across.z * m->px[i] - across.x * m->pz[i], dy = across.y * m->pz[i] - across.z * m->py[i];
@@ -75,7 +76,7 @@ static void aim(marches *m, int i, vec3 across)
     m->closed[i] = 0;
 }
 
-/* The bits whose middles are between two cosines; shifts by 32 are two. */
+/* Returns the bits whose centres lie between two cosines. A shift by 32 would be undefined and is done in two. */
 static inline uint32_t bits_between(float low, float high)
 {
     int first = (int)(0.5f * BITS * (low + 1) + 0.5f), end = (int)(0.5f * BITS * (high + 1) + 0.5f);
@@ -91,7 +92,7 @@ static inline float cosine_to(vec3 to, vec3 view)
     return cosine < 1 ? cosine : 1;
 }
 
-/* What the surface hides that is met so many pixels on. */
+/* Marks what is hidden by the surface this many pixels further. */
 static void meet(const making *m, float way, marches *r)
 {
     const float *depth = m->depth.data;
@@ -114,7 +115,7 @@ static void meet(const making *m, float way, marches *r)
     }
 }
 
-/* Points next to the surface count, too: finer pictures interpolate between them and it. */
+/* Tells whether a point is on or next to the surface: larger pictures interpolate between such points. */
 static bool near_surface(const making *m, float x, float y, float step)
 {
     for (int k = 0; k < 9; k++) {
@@ -183,7 +184,7 @@ static void make_row(void *context, size_t row)
     }
 }
 
-/* The occluder's depth with nothing off the surface. */
+/* Copies the occluder's depth, with NOTHING outside the surface. */
 static status cut_out(const shadow_occluder *c, img *out)
 {
     status s = img_copy(out, &c->depth);
@@ -246,7 +247,7 @@ void horizon_at(const horizon *h, float x, float y, horizon_view *out)
                          out->weight[3] * cosine[3][k];
 }
 
-/* How open the surface is beyond its horizon, between two bits. */
+/* Returns the openness of the surface beyond its horizon, interpolated between two bits. */
 static float open_behind(const horizon_view *at, int azimuth, float cosine)
 {
     float place = fminf(fmaxf(0.5f * BITS * (cosine + 1) - 0.5f, 0), BITS - 1.001f), sum = 0;
@@ -267,7 +268,7 @@ float horizon_sees(const horizon_view *at, vec3 direction, float solid_angle)
     float azimuth = azimuth_of(x, y), between = azimuth - floorf(azimuth);
     int below = (int)azimuth % HORIZON_AZIMUTHS, above = (below + 1) % HORIZON_AZIMUTHS;
     float edge = at->cosine[below] + between * (at->cosine[above] - at->cosine[below]);
-    /* of cosines, that many are as wide as so many angles */
+    /* converts a width in angles to one in cosines */
     float width = sqrtf((BORDER * BORDER + solid_angle) * (x * x + y * y)) + 1e-6f;
     float seen = clamp((z - edge) / width + 0.5f, 0, 1);
     if (seen >= 1) return 1;

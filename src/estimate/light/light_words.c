@@ -7,9 +7,9 @@
 #include "optics/camera.h"
 
 static const float NAMED = 1 / 7.0f;
-enum { LAMP_WORDS = 96 }; /* leaves room for what else there is */
+enum { LAMP_WORDS = 96 }; /* length of a lamp's words, which leaves room for the rest */
 
-/* Says where a lamp is as the camera sees it; one less than 5 degrees aside stands by the lens. */
+/* Describes where a lamp is, as the camera sees it; one within 5 degrees is called next to the lens. */
 static void lamp_words(const merlin_found_light *light, char words[LAMP_WORDS])
 {
     const float right = light->lamp[0], up = light->lamp[1], aside = hypotf(right, up);

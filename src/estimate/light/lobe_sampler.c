@@ -6,11 +6,11 @@
 #include "base/number.h"
 #include "optics/brdf.h"
 
-/* What a sample averages over, in parts of the solid angle that it stands for: neighbours that overlap leave no pattern
- * where a lamp falls between them. */
+/* Solid angle that a sample averages, in units of the one that it stands for: with overlapping neighbours no pattern
+ * appears where a lamp lies between two. */
 #define OVERLAP 2.0f
 
-/* Hammersley points: even steps one way, bits of the number reversed the other way. */
+/* Sets up Hammersley points: equal steps in one coordinate, bit-reversed numbers in the other. */
 void lobe_over(const env_map *env, const horizon *hidden, lobe_sampler *out)
 {
     out->env = env;
@@ -24,7 +24,8 @@ void lobe_over(const env_map *env, const horizon *hidden, lobe_sampler *out)
     }
 }
 
-/* One half vector's share: radiance times f (n·l) over the density of drawing it, D (n·h) / (4 v·h). */
+/* Returns one half vector's contribution: radiance times f (n·l), divided by its probability density D (n·h) / (4 v·h).
+ */
 static vec3 sample(const lobe_sampler *s, const lobe_point *p, const horizon_view *edge, const lobe_place *at,
                    float alpha2, float k)
 {

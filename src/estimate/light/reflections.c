@@ -11,31 +11,31 @@
 #include "optics/brdf.h"
 #include "optics/camera.h"
 
-/* Pixels a side: of what is worked on at once, of the squares in it, and between points that are remembered, which are
- * the smallest squares' middles, too. */
+/* Sizes in pixels: side of a block that is processed at once, of its largest and smallest squares, and the spacing of
+ * stored points, which include the smallest squares' centres. */
 enum { BLOCK = 32, LARGEST = 16, SMALLEST = 4, SPACING = SMALLEST / 2, POINTS = BLOCK / SPACING + 1 };
-/* Roughnesses that are worked out, a constant factor of 1.08 apart. */
+/* Number of roughnesses that are evaluated, a constant factor of 1.08 apart. */
 enum { KNOTS = 48 };
-/* The horizon is known at points; how many steps between these a square may be wide. */
+/* Largest side of a square in steps between the points at which the horizon is known. */
 enum { HORIZONS = 4 };
-/* How far apart the corners' mirror directions may be, and how far a pixel's normal from what its place would have it,
- * in widths of the lobe; and the error in the middle, in parts of what is there and of the mean reflection. Tried
- * (docs/notes/environments.md). */
+/* Limits for interpolation: the distance between the corners' mirror directions and that of a pixel's normal from the
+ * interpolated one, in widths of the lobe; and the error in the middle, relative to the value there and to the mean
+ * reflection. They were found by trial (docs/notes/environments.md). */
 static const float SPREAD = 0.25f, RELIEF = 0.03f, ERROR = 0.02f, DARKEST = 0.1f;
 
 typedef struct job {
     const surface *s;
     camera eye;
     lobe_sampler lobe;
-    int largest;   /* side of a square that may be interpolated */
-    float darkest; /* radiance below which errors are not looked at relative to it */
+    int largest;   /* largest side of a square that may be interpolated */
+    float darkest; /* radiance below which errors are not relative to it */
     img *image;
 } job;
 
 typedef struct block {
     const job *j;
     int x, y;
-    uint64_t known[POINTS * POINTS]; /* a bit a knot */
+    uint64_t known[POINTS * POINTS]; /* one bit per knot */
     vec3 radiance[POINTS * POINTS][KNOTS];
 } block;
 
@@ -106,16 +106,16 @@ static void corners_at(block *b, const tile *t, int knot, vec3 out[4])
         out[k] = radiance_at(b, t->x + k % 2 * t->side, t->y + k / 2 * t->side, knot);
 }
 
-/* ---- is it smooth? ---- */
+/* ---- smoothness ---- */
 
-/* In radians, of mirror directions: the lobe's, and what the map resolves. */
+/* Returns the angular width of mirror directions in radians: that of the lobe and of the map's resolution. */
 static float width_of_lobe(float roughness)
 {
     const float texel2 = 4 * PI / (ENV_MAP_SIDE * ENV_MAP_SIDE);
     return sqrtf(4 * brdf_alpha2(roughness) + texel2);
 }
 
-/* The corners' normals; false if a corner is beside the surface. */
+/* Gets the corners' normals; returns false if a corner lies outside the surface. */
 static bool corner_normals(const job *j, const tile *t, vec3 out[4])
 {
     if (t->x + t->side >= j->eye.width || t->y + t->side >= j->eye.height) return false;
@@ -127,7 +127,7 @@ static bool corner_normals(const job *j, const tile *t, vec3 out[4])
     return *img_at(&j->s->mask, t->x + t->side / 2, t->y + t->side / 2) > 0;
 }
 
-/* How far the corners' mirror directions are from their mean, at most. */
+/* Returns the largest distance of the corners' mirror directions from their mean. */
 static float spread_of(const job *j, const tile *t, const vec3 normals[4])
 {
     vec3 mirrored[4], mean = {0, 0, 0};
@@ -142,10 +142,10 @@ static float spread_of(const job *j, const tile *t, const vec3 normals[4])
     return most;
 }
 
-/* What the pixels of a tile are like. */
+/* Statistics of the pixels of a tile. */
 typedef struct survey {
-    float relief2;     /* largest square of a normal's distance from what the corners say */
-    float least, most; /* roughness */
+    float relief2;     /* largest squared distance of a normal from the interpolated one */
+    float least, most; /* range of roughness */
 } survey;
 
 static survey survey_of(const job *j, const tile *t, const vec3 normals[4])
@@ -187,7 +187,7 @@ static bool is_smooth(block *b, const tile *t)
     return knot_of(seen.most) - least < (float)t->side && middle_is_between(b, t, (int)least);
 }
 
-/* ---- putting it together ---- */
+/* ---- assembly ---- */
 
 static void add_between(block *b, const tile *t)
 {

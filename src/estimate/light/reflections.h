@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* What a surface mirrors of its surroundings.
+/* The reflection of an environment on a surface.
  *
  *     surface_add_reflections(&maps, &env, NULL, &image);   image += the specular lobe over the map
  *
- * lobe.h at every pixel, or as good as that: where normals, lines of sight and what the horizon hides vary little
- * against the width of the lobe, it is worked out at the corners of squares of 16, 8 or 4 pixels, for a few
- * roughnesses, and interpolated to each pixel's place and own roughness. A square's middle tells whether that will do;
- * where not, and at outlines, every pixel is worked out. */
+ * The result is nearly that of lobe_sampler.h at every pixel. Where normals, lines of sight and the horizon vary little
+ * compared with the width of the lobe, it is evaluated at the corners of squares of 16, 8 or 4 pixels, for a few
+ * roughnesses, and interpolated to each pixel's place and roughness. The error in a square's middle decides whether
+ * that suffices; otherwise, and at outlines, every pixel is evaluated. */
 #ifndef MERLIN_ESTIMATE_LIGHT_REFLECTIONS_H
 #define MERLIN_ESTIMATE_LIGHT_REFLECTIONS_H
 
@@ -14,8 +14,8 @@
 #include "estimate/light/horizon.h"
 #include "estimate/surface/surface.h"
 
-/* Times coverage and before clipping, added to image: 3 channels of the surface's size. h: hides some of the
- * surroundings; or NULL. */
+/* Adds the reflection, times coverage and before clipping, to image: 3 channels of the surface's size. h: the horizon
+ * that hides a part of the environment, or NULL. */
 void surface_add_reflections(const surface *s, const env_map *env, const horizon *h, img *image);
 
 #endif

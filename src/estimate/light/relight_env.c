@@ -11,13 +11,13 @@
 #include "optics/ambient.h"
 #include "optics/camera.h"
 
-/* What counts as nearby, for bounces. */
+/* Radius of the neighbourhood for bounces, as a fraction of the frame. */
 enum { FRAME_BY_RADIUS = 24 };
 
 typedef struct pixel {
     vec3 albedo, normal, view;
     float roughness;
-    float x, y; /* shares of the frame */
+    float x, y; /* place in shares of the frame */
 } pixel;
 
 typedef struct job job;
@@ -29,7 +29,7 @@ struct job {
     const env_light *lights;
     int light_count;
     vec3 (*shade)(const job *j, const pixel *p);
-    bool share; /* of light: not times coverage */
+    bool share; /* whether the result is a share of light, not multiplied by coverage */
     img *image;
 };
 
@@ -88,7 +88,7 @@ void surface_add_ambient_highlights(const surface *s, const float sh[9][3], img 
     add(&(job){.s = s, .sh = sh, .shade = shade_highlights, .image = image});
 }
 
-/* ---- what of it arrives ---- */
+/* ---- the part that arrives ---- */
 
 static float share_of(float part, float whole)
 {
@@ -110,7 +110,7 @@ static vec3 shade_seen(const job *j, const pixel *p)
     return vec3_make(share_of(seen.x, all.x), share_of(seen.y, all.y), share_of(seen.z, all.z));
 }
 
-/* Mean radiance of the lit surfaces around every pixel, and how many of these there are. */
+/* Computes the mean radiance of the lit surfaces around every pixel, and their number. */
 static status lit_nearby(const surface *s, const img *seen, const float sh[9][3], img *out)
 {
     img lit = {0};
@@ -130,7 +130,8 @@ static status lit_nearby(const surface *s, const img *seen, const float sh[9][3]
     return result;
 }
 
-/* From where a surface hides the surroundings, it sends light itself: about what it sends to the camera nearby. */
+/* Adds a bounce: where a surface hides the environment it reflects light itself, about as much as it sends to the
+ * camera nearby. */
 static status add_bounce(const surface *s, const float sh[9][3], img *seen)
 {
     img nearby = {0};

@@ -10,11 +10,13 @@
 #include "estimate/surface/fuse.h"
 #include "optics/camera.h"
 
-/* Over what range it ends. This and what follows was tried (docs/notes/cast_shadows.md). */
+/* Range over which the thickness ends. This and the constants below were found by trial (docs/notes/cast_shadows.md).
+ */
 static const float THICKNESS_BORDER = 0.04f;
-/* How far behind the map is behind it, and over what range it becomes so: in pixels, and in shares of the way. */
+/* Distance behind the map from which on a ray is blocked, and the range of the transition, in pixels and as a share of
+ * the distance. */
 static const float MARGIN = 1, BORDER = 1, BORDER_BY_WAY = 0.03f;
-/* Slope of a surface, in pixels a pixel. */
+/* Largest slope of a surface, in pixels per pixel. */
 static const float STEEPEST = 16;
 
 status shadow_occluder_new(const img *depth, const img *normal, const img *mask, camera_lens lens, shadow_occluder *out)
@@ -45,7 +47,8 @@ void shadow_occluder_free(shadow_occluder *occluder)
 
 /* ---- interpolation ---- */
 
-/* Pixel centres are at whole coordinates here; out of the frame the edge goes on. */
+/* The four pixels around a place, and their weights. Pixel centres have integer coordinates here; outside the frame the
+ * edge is repeated. */
 typedef struct corners {
     size_t at[4];
     float weight[4];
@@ -73,19 +76,20 @@ static float value_at(const img *image, const corners *c, int channel)
 
 /* ---- one ray ---- */
 
-/* A straight line in space is one on the picture, along which the inverse of depth changes evenly. */
+/* A ray in the picture: a straight line in space is one in the picture, along which the inverse of depth changes
+ * linearly. */
 typedef struct march {
-    float x, y, inverse;                /* where it starts, pixel centres at whole coordinates */
-    float step_x, step_y, step_inverse; /* a pixel further along the longer axis */
-    float first,
-        count;   /* steps: to the first pixel centre that counts along that axis, and to its end or the frame's */
-    bool across; /* the longer axis is x */
-    float way;   /* scene units to the end, times the end's inverse depth, a step */
-    float pixel; /* its size in scene units at the start */
-    float slope; /* what the surface's depth grows by a pixel across, to the right or down */
+    float x, y, inverse;                /* its start; pixel centres have integer coordinates */
+    float step_x, step_y, step_inverse; /* increments per pixel along the longer axis */
+    float first, count; /* numbers of steps: to the first pixel centre that counts along that axis, and to the end of
+                           the ray or of the frame */
+    bool across;        /* whether the longer axis is x */
+    float way;          /* scene units to the end, times the end's inverse depth, per step */
+    float pixel;        /* size of a pixel in scene units at the start */
+    float slope;        /* increase of the surface's depth per pixel across the ray, to the right or down */
 } march;
 
-/* The part of the way from p to the light over which there is anything to meet, as a share of the whole. */
+/* Returns the share of the way from p to the light along which there can be occluders. */
 static float part_with_occluders(const shadow_occluder *c, vec3 p, vec3 to_light)
 {
     float behind = c->farthest + SHADOW_THICKNESS + THICKNESS_BORDER, part = 1;
@@ -94,7 +98,7 @@ static float part_with_occluders(const shadow_occluder *c, vec3 p, vec3 to_light
     return fminf(part, 1);
 }
 
-/* Of the surface there, along one axis; steeper ones are jumps from part to part. */
+/* Returns the slope of the surface along one axis; steeper ones are discontinuities between parts. */
 static float slope_at(const img *depth, const corners *at, bool down, float pixel)
 {
     const float *d = depth->data, *w = at->weight;
@@ -106,20 +110,20 @@ static float slope_at(const img *depth, const corners *at, bool down, float pixe
     return fabsf(change) < STEEPEST * pixel ? change : 0;
 }
 
-/* After how many steps one axis leaves a frame of so many pixels. */
+/* Returns the number of steps after which one axis leaves a frame of this size. */
 static float steps_inside(float from, float step, int size)
 {
     if (step == 0) return INFINITY;
     return ((step > 0 ? (float)size - 0.5f : -0.5f) - from) / step;
 }
 
-/* Returns the way to a light; to a distant one, as far as anything that is seen reaches. */
+/* Returns the vector to a light; to a distant one, only as far as the visible scene extends. */
 static vec3 way_to(const shadow_occluder *c, vec3 p, const lamp *l)
 {
     return l->distant ? vec3_scale(l->at, 4 * c->farthest) : vec3_sub(l->at, p);
 }
 
-/* False if nothing can be met. */
+/* Sets up a march; returns false if nothing can block it. */
 static bool march_begin(const shadow_occluder *c, float x, float y, const lamp *l, march *m)
 {
     corners around = corners_of(&c->depth, x, y);
@@ -143,7 +147,7 @@ static bool march_begin(const shadow_occluder *c, float x, float y, const lamp *
     m->step_inverse = (-1 / end.z - m->inverse) / m->count;
     float start = m->across ? x : y, forward = m->across ? dx : dy;
     m->first = forward > 0 ? floorf(start) + 1 - start : start - ceilf(start) + 1;
-    if (m->first < 0.5f) m->first += 1; /* that is the surface where it starts */
+    if (m->first < 0.5f) m->first += 1; /* the first pixel is the surface at which it starts */
     m->way = part * vec3_length(to_light) * (-1 / end.z) / m->count;
     m->pixel = camera_pixel_size(&view) * depth;
     m->slope = slope_at(&c->depth, &around, m->across, m->pixel);
@@ -157,7 +161,7 @@ ALWAYS_INLINE float between(float x, float low, float high)
     return x < high ? x : high;
 }
 
-/* How surely the map's pixel `at` stops a ray of this depth there. */
+/* Returns the certainty that the map's pixel `at` blocks a ray of this depth. */
 ALWAYS_INLINE float stops(const shadow_occluder *c, int at, float depth, float margin, float border)
 {
     float behind = depth - c->depth.data[at], back = (SHADOW_THICKNESS - behind) / THICKNESS_BORDER + 1;
@@ -165,7 +169,7 @@ ALWAYS_INLINE float stops(const shadow_occluder *c, int at, float depth, float m
     return c->mask.data[at] >= 0.5f ? surely : 0;
 }
 
-/* How surely the light is hidden by what is met so many steps on; out of the frame the edge goes on. */
+/* Returns the certainty that the light is hidden after this many steps; outside the frame the edge is repeated. */
 ALWAYS_INLINE float met(const shadow_occluder *c, const march *m, float step, bool across)
 {
     const int width = c->depth.width, height = c->depth.height;
@@ -177,7 +181,7 @@ ALWAYS_INLINE float met(const shadow_occluder *c, const march *m, float step, bo
     float beside = across ? y - (float)row : x - (float)column;
     int at = row * width + column, last = across ? height - 1 : width - 1;
     int next = at + ((across ? row : column) < last ? across ? width : 1 : 0);
-    /* the map's pixels lie beside the ray, where the surface that it starts from has another depth, too */
+    /* the map's pixels lie beside the ray, where the surface at its start has another depth */
     float a = stops(c, at, depth - beside * m->slope, margin, border);
     float b = stops(c, next, depth + (1 - beside) * m->slope, margin, border);
     return a + beside * (b - a);
@@ -190,7 +194,7 @@ ALWAYS_INLINE void meet(const shadow_occluder *c, const march *m, float first, b
         hidden[i] = met(c, m, first + (float)i, across);
 }
 
-/* How surely the light is hidden: the surest of the places on the way. */
+/* Returns the certainty that the light is hidden: the largest along the way. */
 static float hidden(const shadow_occluder *c, const march *m)
 {
     float most = 0, there[LANES];
@@ -213,8 +217,7 @@ typedef struct cast {
     img *seen;
 } cast;
 
-/* Points next to the surface count, too: finer pictures have pixels there, and interpolate between them and the next.
- */
+/* Tells whether a point is on or next to the surface: larger pictures have pixels there and interpolate to them. */
 static bool near_surface(const img *mask, float x, float y)
 {
     int left = (int)floorf(x) - 1, top = (int)floorf(y) - 1;

@@ -51,7 +51,7 @@ static void mark_ring(object_search *s)
 }
 
 /* Makes everything outside the box background, like the border. */
-static void heed_box(object_search *s, const img *photo, const merlin_hint *hint)
+static void apply_box(object_search *s, const img *photo, const merlin_hint *hint)
 {
     const float across = (float)s->view.width / (float)photo->width,
                 down = (float)s->view.height / (float)photo->height;
@@ -67,7 +67,7 @@ static void heed_box(object_search *s, const img *photo, const merlin_hint *hint
         s->ring[i] |= s->fixed[i] == BACKGROUND;
 }
 
-static status heed_points(object_search *s, const img *photo, const merlin_hint *hint)
+static status apply_points(object_search *s, const img *photo, const merlin_hint *hint)
 {
     s->wanted = calloc(s->view.count, 1);
     if (!s->wanted) return no_memory();
@@ -93,8 +93,8 @@ static status search_new(const img *photo, const merlin_hint *hint, object_searc
     s->start = calloc(count, 1);
     if (!s->prior || !s->fixed || !s->ring || !s->start) return no_memory();
     mark_ring(s);
-    if (hint && hint->box.width) heed_box(s, photo, hint);
-    if (hint && hint->point_count) st = heed_points(s, photo, hint);
+    if (hint && hint->box.width) apply_box(s, photo, hint);
+    if (hint && hint->point_count) st = apply_points(s, photo, hint);
     return st == OK ? border_distance(&s->view.color, s->ring, &s->away) : st;
 }
 

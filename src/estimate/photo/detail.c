@@ -5,8 +5,8 @@
 #include "estimate/surface/fuse.h"
 #include "image/resize.h"
 
-/* Pixels of the larger picture to one of those by which coarse and fine are told apart. Normals are best with as many
- * (docs/notes/larger_pictures.md has their errors with 4 to 32). */
+/* Ratio of sizes below which detail counts as coarse. Normals are best with 16 (docs/notes/larger_pictures.md has their
+ * errors with 4 to 32). */
 enum { COARSE = 16 };
 
 int detail_side(int size, int crop_side)
@@ -21,8 +21,8 @@ int detail_views(int views)
     return (views + 1) / 2;
 }
 
-/* What a small picture of an image holds of it, large again. Its pixels count from the least of the object on: whole
- * parts may be thinner than half of one. */
+/* Computes the part of an image that a small picture of it contains, enlarged again. Pixels count with any coverage, as
+ * whole parts may be thinner than half a pixel. */
 static status coarse_part(const img *from, const img *mask, img *out)
 {
     const int side = from->width / COARSE;
@@ -51,7 +51,7 @@ status detail_fuse(const img *fine, const img *mask, img *normal)
     return s;
 }
 
-/* What the network says of the larger picture, which is a guide for what it said of the other afterwards. */
+/* Runs the network on the larger picture, and makes the guide that the coarse estimate needs afterwards. */
 static status look(network *n, const detail_request *r, img *guide, img *mask, img *normal)
 {
     status s = input_make(r->photo, r->mask, r->side, guide, mask);

@@ -22,12 +22,12 @@
 #include "image/coverage.h"
 #include "image/read/read.h"
 
-/* One run's intermediate images: `crop` at the photograph's resolution, `low` at the network's; the maps of `low` may
- * have become larger (detail.h). */
+/* Intermediate images of one run: `crop` at the photograph's resolution, `low` at the network's; detail.h may have
+ * enlarged the maps of `low`. */
 typedef struct work {
     const merlin_params *params;
-    img photo, mask;     /* the photograph has no pixels any more once the object is taken out of it */
-    merlin_image *owned; /* the photograph, if it is ours to free; else NULL */
+    img photo, mask;     /* the photograph, whose pixels are released once the crop is taken */
+    merlin_image *owned; /* the photograph, if this run must free it; else NULL */
     crop_square crop;
     sight how;
     img crop_photo, crop_mask;
@@ -36,8 +36,8 @@ typedef struct work {
     surface full;
     img reconstruction;
     light_cues cues;
-    watch watch;  /* by the params */
-    double clock; /* when the current stage began */
+    watch watch;  /* progress, from the params */
+    double clock; /* start of the current step, in seconds */
 } work;
 
 static void work_free(work *w)
@@ -59,7 +59,7 @@ static status lap(work *w, double *seconds)
     return OK;
 }
 
-/* The object's mask becomes the run's. */
+/* Moves the object's mask into the run. */
 static status take_object(work *w, merlin_object *object, merlin_maps *maps)
 {
     w->mask = object->mask;
@@ -82,7 +82,7 @@ static status find_crop(work *w, merlin_maps *maps)
     return s;
 }
 
-/* The object alone. */
+/* Copies the object's pixels into the photograph's frame. */
 static status place_photo(const work *w, merlin_image *to)
 {
     img whole = {0};
@@ -91,7 +91,7 @@ static status place_photo(const work *w, merlin_image *to)
     for (int y = 0; s == OK && y < c.side; y++)
         for (int x = 0; x < c.side; x++) {
             float cover = *img_at(&w->crop_mask, x, y);
-            if (!(cover > 0)) continue; /* what hangs over the frame is not covered */
+            if (!(cover > 0)) continue; /* the part outside the frame has no coverage */
             const float *from = img_at(&w->photo, c.x + x, c.y + y);
             float *out = img_at(&whole, c.x + x, c.y + y);
             for (int k = 0; k < 3; k++)
@@ -101,8 +101,8 @@ static status place_photo(const work *w, merlin_image *to)
     return s;
 }
 
-/* The crop of photograph and mask, and the object alone in the photograph's frame. */
-static status take_out(work *w, merlin_image *object)
+/* Takes the crop of photograph and mask, and the object in the photograph's frame. */
+static status take_crop(work *w, merlin_image *object)
 {
     status s = crop_take(&w->photo, w->crop, &w->mask, &w->crop_photo);
     if (s == OK) s = crop_take(&w->mask, w->crop, &w->mask, &w->crop_mask);
@@ -113,7 +113,7 @@ static status take_out(work *w, merlin_image *object)
     return s;
 }
 
-/* Of what the network will see. */
+/* Checks the network's input. */
 static status check_seen(const img *photo, const img *mask)
 {
     if (coverage_is_transparent(mask))
@@ -126,7 +126,7 @@ static status check_seen(const img *photo, const img *mask)
     return fail(MERLIN_BAD_INPUT, "the object is black in this photograph: there is nothing to see its material by");
 }
 
-/* By what the caller says of the photograph, else by its EXIF. */
+/* Determines the lens: by the caller's parameters, else by EXIF. */
 static void find_lens(work *w, merlin_maps *maps)
 {
     w->how = sight_of(w->params->fov, w->params->shot.focal_35mm, w->photo.width, w->photo.height, w->crop);
@@ -136,10 +136,10 @@ static void find_lens(work *w, merlin_maps *maps)
     maps->slant[1] = w->how.lens.slant.up;
 }
 
-/* The picture and mask that the network sees. */
+/* Makes the picture and mask that the network sees. */
 static status make_input(work *w, merlin_maps *maps)
 {
-    status s = take_out(w, &maps->photo);
+    status s = take_crop(w, &maps->photo);
     if (s == OK) s = input_make(&w->crop_photo, &w->crop_mask, maps->size, &w->low_photo, &w->low_mask);
     if (s == OK) s = check_seen(&w->low_photo, &w->low_mask);
     if (s != OK) return s;
@@ -156,7 +156,7 @@ static status follow_mean(network *n, work *w)
     return mean_bounces(n, &w->low, &w->low.indirect);
 }
 
-/* From a picture so wide; 0: from none. */
+/* Adds detail from a picture of this side; 0: none. */
 static status add_detail(network *n, work *w, int side, float gain)
 {
     const merlin_params *p = w->params;
@@ -176,7 +176,7 @@ static void expose_picture(img *picture, float white)
         if (picture->data[i] != 0) picture->data[i] = clamp(picture->data[i] / white, 0, 1);
 }
 
-/* The maps at the crop's own resolution, and what they look like under the photograph's light. */
+/* Makes the maps at the crop's own resolution, and renders them under the photograph's light. */
 static status refine(work *w, const merlin_found_light *light, float gain, float white, bool in_environment)
 {
     surface_encode_guide(&w->crop_photo, gain);
@@ -209,7 +209,7 @@ static bool is_whole(const work *w)
     return w->crop.x == 0 && w->crop.y == 0 && w->crop.side == w->photo.width && w->crop.side == w->photo.height;
 }
 
-/* From the crop to the photograph's frame; frees the crop's. */
+/* Copies a map of the crop into the photograph's frame, and frees it. */
 static status place(const work *w, img *from, merlin_image *to)
 {
     img whole = {0};
@@ -236,7 +236,8 @@ static status place_all(work *w, merlin_maps *maps)
     return s == OK ? place(w, &w->reconstruction, &maps->reconstruction) : s;
 }
 
-/* By the maps of the network's size, before normals of a larger one replace theirs. photo: its size in pixels. */
+/* Finds the cues for the light in maps of the network's size, before finer normals replace theirs. photo: its size in
+ * pixels. */
 static status find_cues(work *w, const merlin_image *photo, float gain)
 {
     const crop_square c = w->crop;
@@ -249,8 +250,8 @@ static status find_cues(work *w, const merlin_image *photo, float gain)
     return light_cues_find(&w->low.maps, &w->low_photo, &frame, &w->cues);
 }
 
-/* Adds what compiling took: the caller may have had some of it done before, and the question which network it is more.
- */
+/* Adds the compile time, which is measured separately: the caller may have compiled before, and choosing between two
+ * networks needs one more. */
 static status lap_compile(const merlin_model *model, work *w, double *seconds)
 {
     double passed = 0;
@@ -260,7 +261,7 @@ static status lap_compile(const merlin_model *model, work *w, double *seconds)
     return s;
 }
 
-/* Makes the networks of maps and bounces ready, or where no photograph follows that of maps alone. */
+/* Compiles the networks of maps and bounces, or only that of maps if the model is released after this photograph. */
 static status prepare(const merlin_model *model, network *n, work *w, merlin_maps *maps)
 {
     const int views = w->params->views;
@@ -269,7 +270,7 @@ static status prepare(const merlin_model *model, network *n, work *w, merlin_map
     return s == OK ? lap_compile(model, w, &maps->timing.compile) : s;
 }
 
-/* Makes the network of bounces ready; that of maps makes room if nothing wants it any more. */
+/* Compiles the network of bounces, and releases that of maps if it is not needed any more. */
 static status prepare_bounces(const merlin_model *model, network *n, work *w, merlin_maps *maps)
 {
     if (w->params->last) network_release_maps(n);
@@ -277,7 +278,7 @@ static status prepare_bounces(const merlin_model *model, network *n, work *w, me
     return s == OK ? lap_compile(model, w, &maps->timing.compile) : s;
 }
 
-/* Makes the network of the finer normals ready; the one before makes room if nothing wants it any more. */
+/* Compiles the network of finer normals, and releases the previous one if it is not needed any more. */
 static status prepare_finer(const merlin_model *model, network *n, work *w, int finer, merlin_maps *maps)
 {
     if (w->params->last) network_release_maps(n);
@@ -326,7 +327,7 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     return s;
 }
 
-/* owned: photo, if it is to be freed; or NULL. */
+/* Estimates a photograph. owned: photo, if it is to be freed; or NULL. */
 static status estimate_photo(merlin_model *model, const merlin_image *photo, merlin_image *owned, merlin_object *object,
                              const merlin_params *params, light_cues *cues, merlin_maps *maps)
 {

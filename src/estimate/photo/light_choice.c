@@ -3,7 +3,7 @@
 
 #include "estimate/light/found_light.h"
 
-static status ask(network *any, const light_question *q, bool *is_flash)
+static status estimate_is_flash(network *any, const light_question *q, bool *is_flash)
 {
     float code[MODEL_LIGHTS];
     merlin_found_light light;
@@ -18,7 +18,7 @@ status light_choice(network *any, network *flash, const light_question *q, netwo
 {
     bool is_flash = q->how->flash;
     status s = OK;
-    if (flash && !is_flash && q->fired != MERLIN_FLASH_NONE) s = ask(any, q, &is_flash);
+    if (flash && !is_flash && q->fired != MERLIN_FLASH_NONE) s = estimate_is_flash(any, q, &is_flash);
     *out = flash && is_flash ? flash : any;
     return s;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The choice between two networks for a photograph: one of any light, and one that knows a flash at the lens alone, and
- * better.
+/* The choice between two networks for a photograph: one for any light, and one for a flash at the lens alone, which is
+ * better there.
  *
  *     network *n;
  *     status s = light_choice(any, flash, &(light_question){&photo, &mask, &how, shot.flash}, &n);
@@ -13,13 +13,13 @@
 #include "merlin/merlin.h"
 
 typedef struct light_question {
-    const img *photo, *mask; /* as of network_estimate */
+    const img *photo, *mask; /* as for network_estimate */
     const sight *how;
     merlin_flash fired;
 } light_question;
 
-/* flash: NULL for `any` without a question. The photographer's word (how->flash) counts, then the camera's that no
- * flash fired, then what `any` sees in one orientation. */
+/* Chooses by the photographer's statement (how->flash), else by the camera's that no flash fired, else by what `any`
+ * estimates in one orientation. flash: NULL always chooses `any`. */
 status light_choice(network *any, network *flash, const light_question *q, network **out);
 
 #endif

@@ -9,21 +9,21 @@
 #include "image/resize.h"
 #include "optics/camera.h"
 
-enum { FEWEST = 60 }; /* pixels, that a median may be taken of */
+enum { FEWEST = 60 }; /* least number of pixels for a median */
 static const float BURNT = 0.95f, BEYOND_WHITE = 1.01f;
-/* Share of the 95th percentile that luminance is raised by before its logarithm, and below which it counts as black. */
+/* Offset added to luminance before its logarithm, and the limit of black, as a share of the 95th percentile. */
 static const float FLOOR = 0.02f;
 
 /* Planes of the maps' size. */
 typedef struct planes {
     int width, height;
     img inside;  /* 1 on the object */
-    img seen;    /* 1 where it is not burnt out, too */
+    img seen;    /* 1 on the object where it is not burnt out */
     img light;   /* log luminance, smoothed */
-    img shading; /* log of the maps' shading under a flash, smoothed alike */
-    img away;    /* pixels to the outline */
+    img shading; /* log of the maps' shading under a flash, smoothed in the same way */
+    img away;    /* distance to the outline in pixels */
     img away_smooth;
-    float radius; /* of the object, in pixels */
+    float radius; /* radius of a disc of the object's area, in pixels */
 } planes;
 
 static void planes_free(planes *p)
@@ -49,7 +49,7 @@ static int compare(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Sorts the values. */
+/* Returns a quantile; sorts the values. */
 static float quantile(float *values, size_t count, float share)
 {
     if (count == 0) return 0;
@@ -59,7 +59,8 @@ static float quantile(float *values, size_t count, float share)
 
 /* ---- planes ---- */
 
-/* Pixels to the nearest one that is not the object's and lies in the photograph, by two passes (Borgefors 1986). */
+/* Computes the distance in pixels to the nearest one that lies in the photograph outside the object, in two passes
+ * (Borgefors 1986). */
 static void measure_away(const light_frame *frame, planes *p)
 {
     const float far = 1e6f, diagonal = 1.41421356f;
@@ -82,14 +83,14 @@ static void measure_away(const light_frame *frame, planes *p)
         }
 }
 
-/* Twice by windows of 2 radius + 1 pixels. */
+/* Smooths twice by windows of 2 radius + 1 pixels. */
 static status smooth(img *plane, int radius)
 {
     status s = img_box_sums(plane, radius);
     return s == OK ? img_box_sums(plane, radius) : s;
 }
 
-/* Smooths what is seen alone; elsewhere any value comes out. */
+/* Smooths using only pixels that are `seen`; elsewhere the result is arbitrary. */
 static status smooth_seen(img *plane, const img *seen, int radius)
 {
     img weight;
@@ -105,7 +106,7 @@ static status smooth_seen(img *plane, const img *seen, int radius)
     return s;
 }
 
-/* Log of n·l / d² of the maps under a flash at the lens. */
+/* Returns the log of n·l / d² of the maps under a flash at the lens. */
 static float log_shading(const surface *maps, const camera *view, int x, int y)
 {
     const float least = 0.02f, nearest = 0.05f;
@@ -115,7 +116,7 @@ static float log_shading(const surface *maps, const camera *view, int x, int y)
     return logf(fmaxf(fmaxf(facing, 0) / square, least));
 }
 
-/* The luminance that 95 of 100 of the object's pixels do not exceed; *count: how many there are. */
+/* Finds the 95th percentile of the object's luminance; *count: number of its pixels. */
 static status bright_luminance(const planes *p, float *out, size_t *count)
 {
     float *values = malloc(img_value_count(&p->inside) * sizeof *values);
@@ -173,7 +174,7 @@ static status make_planes(const surface *maps, const img *photo, const light_fra
 /* ---- slopes ---- */
 
 typedef struct slope {
-    float x, y; /* right and down */
+    float x, y; /* to the right and down */
 } slope;
 
 static slope slope_at(const img *plane, int x, int y)
@@ -182,19 +183,19 @@ static slope slope_at(const img *plane, int x, int y)
                    (*img_at(plane, x, y + 1) - *img_at(plane, x, y - 1)) / 2};
 }
 
-/* Unit, away from the object's middle; 0 on ridges, which are as far from two sides. */
+/* Returns the unit direction away from the object's middle; 0 on ridges, which are equally far from two sides. */
 static slope outward_at(const planes *p, int x, int y)
 {
     const float steep = 0.5f;
     slope way = slope_at(&p->away_smooth, x, y);
     float length = hypotf(way.x, way.y);
-    /* sums of two windows: their slope is as many times as steep as the windows have pixels */
+    /* difference of two windows' sums, whose slope is larger by the number of pixels of a window */
     int wide = (int)lroundf(0.04f * p->radius), side = 2 * (wide > 1 ? wide : 1) + 1;
     if (length < steep * powf((float)side, 4)) return (slope){0, 0};
     return (slope){-way.x / length, -way.y / length};
 }
 
-/* Tells whether slopes there are of the object alone. */
+/* Tells whether slopes at a pixel involve the object only. */
 static bool is_well_inside(const planes *p, int x, int y)
 {
     enum { REACH = 3 };
@@ -203,13 +204,13 @@ static bool is_well_inside(const planes *p, int x, int y)
            *img_at(&p->seen, x, y - REACH) > 0 && *img_at(&p->seen, x, y + REACH) > 0;
 }
 
-/* Lists of values of the object's pixels, each with room for all of them. */
+/* Lists of values at the object's pixels, each with room for all of them. */
 typedef struct lists {
     float *light_x, *light_y, *rest_x, *rest_y, *steepness, *fall;
     size_t all, band;
 } lists;
 
-static void take_slopes(const planes *p, lists *l)
+static void collect_slopes(const planes *p, lists *l)
 {
     const float nearest = 2.5f, reach = fmaxf(8, 0.3f * p->radius);
     for (int y = 0; y < p->height; y++)
@@ -228,7 +229,7 @@ static void take_slopes(const planes *p, lists *l)
         }
 }
 
-/* The mean slope of all but the steepest fifth, where colours end. */
+/* Returns the mean slope without the steepest fifth, which are borders of colours. */
 static float mean_tilt(const lists *l)
 {
     float *sorted = l->steepness + l->all, limit;
@@ -244,13 +245,13 @@ static float mean_tilt(const lists *l)
     return count > 0 ? (float)(hypot(x, y) / count) : 0;
 }
 
-static status judge_slopes(const planes *p, light_cues *out)
+static status measure_slopes(const planes *p, light_cues *out)
 {
     size_t room = img_value_count(&p->inside);
     float *data = malloc(7 * room * sizeof *data);
     if (!data) return fail(MERLIN_NO_MEMORY, "no memory to judge the light");
     lists l = {data, data + room, data + 2 * room, data + 3 * room, data + 4 * room, data + 6 * room, 0, 0};
-    take_slopes(p, &l);
+    collect_slopes(p, &l);
     out->known = l.band >= FEWEST && l.all >= FEWEST;
     out->tilt = mean_tilt(&l) * p->radius;
     out->fall = quantile(l.fall, l.band, 0.5f) * p->radius;
@@ -261,7 +262,7 @@ static status judge_slopes(const planes *p, light_cues *out)
 
 /* ---- shape ---- */
 
-static status judge_shape(const surface *maps, const planes *p, light_cues *out)
+static status measure_shape(const surface *maps, const planes *p, light_cues *out)
 {
     size_t room = img_value_count(&p->inside), rim = 0, core = 0, inward = 0;
     double outward = 0;
@@ -299,15 +300,15 @@ status light_cues_find(const surface *maps, const img *photo, const light_frame 
     *out = (light_cues){0};
     planes p;
     status s = make_planes(maps, photo, frame, &p, out);
-    if (s == OK) s = judge_slopes(&p, out);
-    if (s == OK) s = judge_shape(maps, &p, out);
+    if (s == OK) s = measure_slopes(&p, out);
+    if (s == OK) s = measure_shape(maps, &p, out);
     planes_free(&p);
     return s;
 }
 
-/* ---- the answer ---- */
+/* ---- the result ---- */
 
-/* Logistic regression: see docs/notes/doubts.md. */
+/* Coefficients of a logistic regression; see docs/notes/doubts.md. */
 static const struct {
     float fall, tilt, rest, black, outward, inward, rise, constant;
 } WEIGHTS = {1.076f, 1.528f, 1.814f, 32.421f, 3.966f, 8.634f, -4.942f, -3.329f};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A model as merlin/model.h opens it: one network, or two of which one knows flashes better. */
+/* A model as merlin/model.h opens it: one network, or two of which one is better for flash photographs. */
 #ifndef MERLIN_ESTIMATE_PHOTO_MODEL_PAIR_H
 #define MERLIN_ESTIMATE_PHOTO_MODEL_PAIR_H
 
@@ -8,17 +8,17 @@
 
 struct merlin_model {
     network *network;
-    network *flash; /* for photographs lit by a flash alone; NULL: `network` sees them, too */
+    network *flash; /* for photographs lit by a flash only; NULL: `network` is used for them, too */
 };
 
-/* flash: weights for merlin_model_add_flash, or NULL. */
+/* Opens a model. flash: weights for merlin_model_add_flash, or NULL. */
 status model_open_pair(const char *weights, const char *flash, merlin_model **out);
 
-/* Returns the network that made the maps; for maps of others the flash's, which knows how light goes on between
- * surfaces where a flash's is all it is given. To relight by the decoder it is one that has it. */
+/* Returns the network that made the maps; for maps of another origin that for flashes, whose bounces need only a
+ * flash's direct light. For relighting by the decoder it is the one that has a decoder. */
 network *model_network(const merlin_model *model, const merlin_maps *maps, merlin_relighting how);
 
-/* Closes that of its networks which is not `kept`: no photograph follows that would want it. */
+/* Closes that of its networks which is not `kept`, as no photograph follows that needs it. */
 void model_keep(merlin_model *model, network *kept);
 
 #endif

@@ -11,13 +11,13 @@
 #include "estimate/surface/smooth.h"
 #include "optics/orientation.h"
 
-/* What each program is made for; the rest of the whole network is left out of it. */
+/* Outputs of each program; the rest of the whole network is left out of it. */
 static const char *const single_outputs[] = {"albedo",           "normal", "roughness",  "depth", "indirect",
                                              "environment_code", "lights", "visibility", NULL};
 static const char *const normal_outputs[] = {"normal", NULL};
 static const char *const light_outputs[] = {"lights", NULL};
 
-/* Callers know the configuration already, so that it must be what it was when the file was opened. */
+/* Checks that the configuration is still what it was when the file was opened, as callers know it already. */
 static status check_config(const network *n, const model_config *now)
 {
     char *one = model_config_write(now), *other = model_config_write(&n->config);
@@ -123,7 +123,7 @@ void network_close(network *n)
     pthread_mutex_destroy(&n->lock);
     free(n->weights);
     free(n);
-    malloc_trim(0); /* the C library keeps what was freed otherwise */
+    malloc_trim(0); /* the C library keeps freed memory otherwise */
 }
 
 const model_config *network_config(const network *n)
@@ -131,7 +131,8 @@ const model_config *network_config(const network *n)
     return &n->config;
 }
 
-/* That with most memory: all use it, for inputs are put before every run, and outputs taken after it. */
+/* Returns the program with the largest memory. All programs share it, as inputs are written before every run and
+ * outputs read after it. */
 static const nn_program *largest(const network *n)
 {
     const nn_program *all[] = {n->lights.program, n->maps.program,  n->normals.program,
@@ -212,7 +213,7 @@ double network_take_compile_seconds(network *n)
 
 /* ---- between images and the program's buffers ---- */
 
-/* scale·x + shift. */
+/* Writes scale·x + shift into an input. */
 static void put(nn_program *p, const char *name, const img *from, float scale, float shift)
 {
     float *to = nn_input_data(p, name);
@@ -245,7 +246,7 @@ status network_run_view(network *n, const network_subject *at, int view, const c
     return nn_forward(c->program);
 }
 
-/* Albedo and roughness leave the network in [-1, 1]. */
+/* Reads the maps; albedo and roughness are in [-1, 1] in the network. */
 static status take_maps(nn_program *p, int size, surface *maps)
 {
     status s = network_take(p, "albedo", size, 3, 0.5f, 0.5f, &maps->albedo);
@@ -255,7 +256,7 @@ static status take_maps(nn_program *p, int size, surface *maps)
     return s;
 }
 
-/* The environment that a model of both lights sees in the photograph. */
+/* Reads the environment that a model of both lights estimates. */
 static void take_environment(nn_program *p, float sh[9][3])
 {
     const float *code = nn_output_data(p, "environment_code");
@@ -265,7 +266,7 @@ static void take_environment(nn_program *p, float sh[9][3])
         memset(sh, 0, 9 * sizeof *sh);
 }
 
-/* What the network says of the photograph in an orientation, as it lies there. */
+/* Runs the network on the photograph in one orientation; the result has that orientation, too. */
 static status estimate_view(network *n, const network_subject *at, int view, const char *const *outputs,
                             network_estimation *out)
 {
@@ -397,15 +398,15 @@ void network_estimation_free(network_estimation *e)
     img_free(&e->visibility);
 }
 
-/* Without a call, so that loops become vectors. */
+/* Clamps without a function call, so that loops are vectorized. */
 static inline float between_0_and_1(float x)
 {
     x = x > 0 ? x : 0;
     return x < 1 ? x : 1;
 }
 
-/* As in training: a lamp's light is clipped to [0, 1], an environment's is added by models that know of it, and is so
- * much more of the lamp's for the others. */
+/* Writes direct light as in training: a lamp's is clipped to [0, 1]; an environment's is added separately for models
+ * that know environments, and to the lamp's for others. */
 static void put_direct(nn_program *p, const img *direct, const img *environment)
 {
     float *to = nn_input_data(p, "direct"), *apart = nn_input_data(p, "environment");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The relighting decoder: what it takes of a photograph, and that photograph under other light. */
+/* The relighting decoder: features of a photograph, and the photograph under another light. */
 #include <stdlib.h>
 
 #include "estimate/photo/network.h"
@@ -50,7 +50,7 @@ void network_look_free(network_look *look)
     free(look);
 }
 
-/* In one orientation, added to the mean. */
+/* Relights in one orientation, and adds the result to the mean. */
 static status relight_view(network *n, const network_look *look, const illumination *light, int view, img *mean)
 {
     img relit = {0};

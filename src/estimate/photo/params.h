@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Checks what merlin_estimate is asked for (merlin/estimate.h). */
+/* Checks the parameters of merlin_estimate (merlin/estimate.h). */
 #ifndef MERLIN_ESTIMATE_PHOTO_PARAMS_H
 #define MERLIN_ESTIMATE_PHOTO_PARAMS_H
 
 #include "base/status.h"
 #include "merlin/estimate.h"
 
-/* MERLIN_WRONG_USE for a size, number of views, field of view or exposure that cannot be. */
+/* Fails with MERLIN_WRONG_USE for an impossible size, number of views, field of view or exposure. */
 status params_check(const merlin_params *params);
 
 #endif

@@ -15,7 +15,7 @@
 #include "image/read/read.h"
 #include "merlin/merlin.h"
 
-/* merlin/maps.h says what they mean; docs/notes/doubts.md how they were found. */
+/* Thresholds. merlin/maps.h gives the meaning of the warnings, docs/notes/doubts.md their derivation. */
 static const float MUCH_BURNT_OUT = 0.1f, MUCH_CUT = 0.25f, LIKELY_ELSEWHERE = 0.6f;
 static const float FULL = 0.97f, FULL_IF_FOUND = 0.66f, NARROW = 5, WIDE = 95;
 static const float DARK = 0.02f, LITTLE_OUTWARD = 0.1f, MUCH_INWARD = 0.4f, MUCH_FLAT = 0.6f;
@@ -64,8 +64,9 @@ static unsigned doubts_of_mask(const merlin_maps *maps)
 /* ---- the pixels ---- */
 
 typedef struct pixels {
-    size_t count, coloured, flat, neither; /* of those covered wholly; neither black nor white */
-    float shade[FEW_SHADES];               /* different values of green, as many as there is room for */
+    size_t count, coloured, flat,
+        neither; /* counts of fully covered pixels; `neither` counts those that are neither black nor white */
+    float shade[FEW_SHADES]; /* distinct values of green, up to a maximum */
     int shades;
     float brightest;
 } pixels;
@@ -83,7 +84,7 @@ static bool is_color(const float *a, const float *b)
     return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-/* Tells whether the eight pixels around have a pixel's very colour. */
+/* Tells whether a pixel and its eight neighbours have exactly the same colour. */
 static bool is_flat(const img *photo, const img *mask, int x, int y)
 {
     const float *color = img_at(photo, x, y);
@@ -251,7 +252,7 @@ static double percent(float share)
     return 100 * (double)share;
 }
 
-/* Writes the words for a doubt of maps that were read, and mended. */
+/* Writes the text of a warning about maps that were read and corrected. */
 static int mended_words(const merlin_maps *maps, merlin_doubt doubt, char *text, size_t size)
 {
     switch (doubt) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Why the maps of a photograph may be wrong: merlin_maps' doubts found, and put into words. */
+/* Reasons why the maps of a photograph may be wrong: finds merlin_maps' doubts, and describes them. */
 #ifndef MERLIN_ESTIMATE_PHOTO_PHOTO_DOUBTS_H
 #define MERLIN_ESTIMATE_PHOTO_PHOTO_DOUBTS_H
 
@@ -7,9 +7,9 @@
 #include "estimate/photo/light_cues.h"
 #include "merlin/merlin.h"
 
-/* From maps that are complete; how is what is known of the shot. */
+/* Finds the doubts of complete maps, given what is known about the exposure. */
 void doubts_find(const light_cues *cues, const merlin_shot *shot, merlin_maps *maps);
-/* Adds them to a list, the gravest first. */
+/* Adds them to a list, the most severe first. */
 void doubts_list(const merlin_maps *maps, warnings *list);
 
 #endif

@@ -103,7 +103,7 @@ void view_features_free(view_features *f)
     *f = (view_features){0};
 }
 
-/* A picture that is turned back while it is added. */
+/* A picture that is rotated back while it is added. */
 typedef struct addition {
     img *mean;
     const img *turned;
@@ -146,7 +146,7 @@ void view_add_normals(img *mean, const img *turned, int view, float weight)
     parallel_blocks(pixel_count(mean), add_normals, &(addition){mean, turned, view, weight});
 }
 
-/* What lit a photograph, by a model of any light. */
+/* Adds the light of a photograph, estimated by a model of any light. */
 static void add_lights(network_estimation *mean, const network_estimation *turned, int view, float weight)
 {
     float lights[MODEL_LIGHTS], sh[9][3];

@@ -24,8 +24,8 @@ static status take_light(const float *light, lamp *place)
     return fail(MERLIN_WRONG_USE, "the light's position is not finite");
 }
 
-/* Into the photograph's frame. */
-static status put_back(const merlin_maps *maps, const img *square, const img *mask, merlin_image *out)
+/* Copies a square picture into the photograph's frame. */
+static status place_square(const merlin_maps *maps, const img *square, const img *mask, merlin_image *out)
 {
     img whole = {0};
     status s = img_new(&whole, maps->albedo.width, maps->albedo.height, 3);
@@ -34,7 +34,7 @@ static status put_back(const merlin_maps *maps, const img *square, const img *ma
     return s;
 }
 
-/* The light that maps are relit by: lamps together, and surroundings or NULL. */
+/* The light by which maps are relit: lamps together, and an environment or NULL. */
 typedef struct lighting {
     const lamp *lamps;
     int count;
@@ -54,8 +54,8 @@ static status relight_maps(merlin_model *model, const merlin_maps *maps, const l
     if (s == OK) s = relighter_render(n, &st, by->lamps, by->count, &square);
     img mask = st.full.mask;
     st.full.mask = (img){0};
-    relighter_free(&st); /* before a large photograph's frame is made */
-    if (s == OK) s = put_back(maps, &square, &mask, out);
+    relighter_free(&st); /* frees memory before a large photograph's frame is allocated */
+    if (s == OK) s = place_square(maps, &square, &mask, out);
     img_free(&mask);
     img_free(&square);
     return s;

@@ -15,7 +15,8 @@ status maps_check(const merlin_maps *maps)
     const merlin_image *images[IMAGES] = {&maps->albedo, &maps->normal, &maps->roughness,     &maps->depth,
                                           &maps->mask,   &maps->photo,  &maps->reconstruction};
     const int channels[IMAGES] = {3, 3, 1, 1, 1, 3, 3};
-    int count = maps->reconstruction.data ? IMAGES : RECONSTRUCTION; /* which maps from a folder do not have */
+    int count =
+        maps->reconstruction.data ? IMAGES : RECONSTRUCTION; /* maps read from a folder have no reconstruction */
     bool sound = crop_is_sound(crop_of(maps)) && maps->size >= NETWORK_LEAST_SIZE && maps->size <= NETWORK_SIZE &&
                  maps->size % MODEL_SIZE_MULTIPLE == 0 && exposure_is_sound(maps->gain);
     for (int i = 0; i < count; i++)
@@ -40,7 +41,7 @@ status maps_as_photographed(const merlin_maps *maps, surface *out)
         s = crop_take(&whole, crop_of(maps), &mask, to[i]);
     }
     out->lens = lens_of(maps);
-    if (s == OK) surface_tidy(out); /* anybody may have edited the maps */
+    if (s == OK) surface_tidy(out); /* the maps may have been edited */
     return s;
 }
 
@@ -50,7 +51,7 @@ status maps_take_mask(const merlin_maps *maps, img *out)
     return crop_take(&whole, crop_of(maps), &whole, out);
 }
 
-/* One map of the crop at another size; mask: of the crop, and at the other size. */
+/* Resizes one map of the crop; mask: of the crop, and at the new size. */
 static status take_map(const merlin_maps *maps, const merlin_image *map, const img *mask, const img *resized_mask,
                        img *out)
 {
@@ -61,7 +62,7 @@ static status take_map(const merlin_maps *maps, const merlin_image *map, const i
     return s;
 }
 
-/* Takes a map after the other: those of a large photograph would fill the memory side by side. */
+/* Takes one map after the other, as all those of a large photograph at once would take much memory. */
 status maps_take_surface(const merlin_maps *maps, const img *mask, int side, bool hard, surface *out)
 {
     const merlin_image *from[] = {&maps->albedo, &maps->normal, &maps->roughness, &maps->depth};

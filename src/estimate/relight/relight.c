@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A relighter under light. */
+/* Renders a relighter's pictures under its lights. */
 #include <math.h>
 #include <stdbool.h>
 
@@ -8,21 +8,21 @@
 #include "estimate/light/relight_env.h"
 #include "estimate/relight/relighter.h"
 
-/* Shadows are looked for at most at this many points a side. */
+/* Largest number of points per side from which shadow rays start. */
 enum { SHADOW_SIDE = 512 };
 
-/* Here and below zeros are left alone (image.h). */
+/* Multiplies by the mask. Zeros are not written to, here and below (image.h). */
 static void multiply_mask(img *image, const img *mask)
 {
     for (size_t i = 0; i < img_value_count(image); i++)
         if (image->data[i] != 0) image->data[i] *= mask->data[i / 3];
 }
 
-/* From twice as many points a side as the occluder has, as long as the picture shows them. */
+/* Casts shadows at twice as many points per side as the occluder has, unless the picture has fewer. */
 static status cast_shadows(const relighter *s, const lamp *light, img *full, img *low)
 {
     bool flash = !light->distant && vec3_dot(light->at, light->at) < 1e-12f;
-    if (flash) return OK; /* the camera sees nothing that its flash does not */
+    if (flash) return OK; /* the flash is at the camera, which sees no shadow of it */
     int side = min_int(full->width, min_int(2 * s->occluder.depth.width, SHADOW_SIDE));
     img seen = {0};
     status result = shadow_cast_lamp(&s->occluder, light, side, side, &seen);
@@ -33,7 +33,7 @@ static status cast_shadows(const relighter *s, const lamp *light, img *full, img
     return OK;
 }
 
-/* Bounce 1 at both sizes. */
+/* Computes bounce 1 at both sizes. */
 static status light_by_brdf(const relighter *s, const lamp *light, img *full, img *low)
 {
     status result = surface_shade_lamp(&s->full, light, full);
@@ -47,13 +47,13 @@ static status light_by_network(network *n, const relighter *s, const lamp *light
     illumination both = {light->at, s->environment ? (const float(*)[3])s->environment->sh : NULL};
     status result = network_relight(n, s->look, &both, low);
     if (result == OK) result = surface_resize_image(low, &s->low.mask, &s->full.mask, full);
-    /* enlarged or not, it goes on beside the object */
+    /* whether enlarged or not, it continues outside the object */
     if (result == OK) multiply_mask(full, &s->full.mask);
     return result;
 }
 
-/* The environment's light without shadows: its diffuse part at the network's size, and all of it on top of `full`. What
- * the relighting decoder gives (`low` and `full` then) has the diffuse part already. */
+/* Adds an environment's light without shadows: its diffuse part at the network's size, and all of it to `full`. The
+ * output of the relighting decoder (then in `low` and `full`) already contains the diffuse part. */
 static status add_environment(const relighter *s, img *low, img *full, img *ambient)
 {
     const env_map *env = s->environment;
@@ -71,7 +71,7 @@ static status add_environment(const relighter *s, img *low, img *full, img *ambi
     return OK;
 }
 
-/* The network's bounces 2 and up for `low` and `ambient`, resized and added to `full`. */
+/* Adds the network's bounces 2 and up for `low` and `ambient`, resized, to `full`. */
 static status add_indirect(network *n, const relighter *s, const img *low, const img *ambient, img *full)
 {
     img indirect = {0}, large = {0};
@@ -99,8 +99,9 @@ static status light_by_lamp(network *n, const relighter *s, const lamp *light, i
     return s->how == MERLIN_BY_NETWORK ? light_by_network(n, s, light, full, low) : light_by_brdf(s, light, full, low);
 }
 
-/* All light is in proportion to the lamp's; the network is asked of a white one of the power it was taught by. */
-static void dye(vec3 tint, img *radiance)
+/* Multiplies by a lamp's tint. All light is proportional to the lamp's, and the network is evaluated for a white one of
+ * its training power. */
+static void apply_tint(vec3 tint, img *radiance)
 {
     if (tint.x == 1 && tint.y == 1 && tint.z == 1) return;
     for (size_t i = 0; i < img_value_count(radiance); i += 3) {
@@ -137,19 +138,20 @@ status relighter_check(merlin_relighting how, const lamp *light, bool environmen
     return OK;
 }
 
-/* By the lamp, bounces included, where these can be told from the environment's: in parts that can be dyed. */
+/* Adds a lamp's light, with its bounces if these can be separated from the environment's, so that each part can be
+ * tinted. */
 static status add_lamp(network *n, const relighter *s, const lamp *light, bool alone, img *full, img *low)
 {
     const img none = {0};
     status result = light_by_lamp(n, s, light, full, low);
     if (result == OK && alone && s->how != MERLIN_BY_BRDF_DIRECT) result = add_indirect(n, s, low, &none, full);
     if (result != OK) return result;
-    dye(light->tint, full);
-    if (!alone) dye(light->tint, low);
+    apply_tint(light->tint, full);
+    if (!alone) apply_tint(light->tint, low);
     return OK;
 }
 
-/* Light adds. Likewise. */
+/* Adds the light of several lamps. */
 static status add_lamps(network *n, const relighter *s, const lamp *lights, int count, bool alone, img *full, img *low)
 {
     status result = count ? add_lamp(n, s, &lights[0], alone, full, low) : dark(s, full, low);
@@ -172,7 +174,7 @@ status relighter_render(network *n, const relighter *s, const lamp *lights, int 
     status result = add_lamps(n, s, lights, count, !joint, out, &low);
     if (result == OK && joint) result = add_environment(s, &low, out, &ambient);
     if (result == OK && joint) result = add_indirect(n, s, &low, &ambient, out);
-    /* with its shadows and a bounce nothing of an environment's light is left to the network */
+    /* with its shadows and a bounce, no light of an environment is left for the network to add */
     if (result == OK && shadows)
         result = surface_add_shadowed_environment(&s->full, &s->low, &s->horizon, s->environment, out);
     if (result == OK) expose(out, s->white);

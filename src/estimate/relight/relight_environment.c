@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* merlin_environment: surroundings from a file. */
+/* merlin_environment: an environment map from a file. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -9,14 +9,14 @@
 #include "image/read/read.h"
 #include "merlin/merlin.h"
 
-/* The well lit of the training data (render/environment.c). */
+/* Mean luminance of well-lit samples in the training data (render/environment.c). */
 static const float MEAN_LUMINANCE = 1.0f;
 static const float MOST_EXPOSURE = 20.0f;
 
-/* Negative values that are next to nothing are what enlarging or packing leaves. */
+/* Returns the share of negative values; those close to zero result from resizing or compression and do not count. */
 static double share_negative(const img *picture)
 {
-    const double nothing = 1e-3; /* of the mean */
+    const double nothing = 1e-3; /* limit relative to the mean */
     double sum = 0;
     size_t count = img_value_count(picture), negative = 0;
     for (size_t i = 0; i < count; i++)
@@ -26,7 +26,7 @@ static double share_negative(const img *picture)
     return (double)negative / (double)count;
 }
 
-/* Divides by a power of two, so that nothing is rounded: the sums over the largest floats would not be finite. */
+/* Divides by a power of two, which rounds nothing: sums over the largest floats would not be finite. */
 static void bring_to_one(img *picture)
 {
     float most = 0;

@@ -8,7 +8,7 @@
 #include "estimate/surface/exposure.h"
 #include "image/resize.h"
 
-/* Shadows are cast by maps of at most this side; a light costs a few hundredths of a second then. */
+/* Largest side of the maps that cast shadows, so that a light takes a few hundredths of a second. */
 enum { OCCLUDER_SIDE = 512 };
 
 void relighter_free(relighter *s)
@@ -33,7 +33,7 @@ static status surface_at(const surface *from, int side, surface *out)
     return s;
 }
 
-/* The photograph as the network saw it. */
+/* Makes the photograph as the network saw it. */
 static status take_low_photo(const merlin_maps *maps, img *mask, img *out)
 {
     img whole = maps->photo, cover = maps->mask, part = {0};
@@ -46,7 +46,7 @@ static status take_low_photo(const merlin_maps *maps, img *mask, img *out)
     return OK;
 }
 
-/* Of the maps as the network gave them: the photograph's resolution adds nothing to their shape. */
+/* Makes the occluder from the network's own maps, as the photograph's resolution adds nothing to their shape. */
 static status occluder_of(const surface *low, shadow_occluder *out)
 {
     surface less = {0};
@@ -77,7 +77,7 @@ status relighter_resize(relighter *s, const merlin_maps *maps, int side)
     return result;
 }
 
-/* What the network saw, and what every light wants of it. */
+/* Makes what the network saw, and what all lights need of it. */
 static status take_low(network *n, const merlin_maps *maps, const img *mask, relighter *s)
 {
     status result = maps_take_surface(maps, mask, maps->size, true, &s->low);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Maps made ready for many lights, and surroundings. */
+/* Maps prepared for many lights and environments. */
 #ifndef MERLIN_ESTIMATE_RELIGHT_RELIGHTER_H
 #define MERLIN_ESTIMATE_RELIGHT_RELIGHTER_H
 
@@ -15,43 +15,44 @@ struct merlin_environment {
     double negative; /* share of the file's values that were negative */
 };
 
-/* Maps made ready for many lights: the crop at some resolution, and as the network saw it. */
+/* Maps prepared for many lights: the crop at some resolution, and at the network's. */
 typedef struct relighter {
     surface full, low;
-    img low_photo;              /* radiance */
-    network_look *look;         /* the network's at it, for the relighting decoder; else NULL */
-    img flash;                  /* `low` under it, bounce 1 */
+    img low_photo;              /* radiance of the photograph at the network's size */
+    network_look *look;         /* features for the relighting decoder; else NULL */
+    img flash;                  /* bounce 1 of `low` under the flash */
     shadow_occluder occluder;   /* empty unless shadows are cast */
-    horizon horizon;            /* the same, and an environment was given */
-    const env_map *environment; /* lights beside the point light, or NULL; borrowed */
-    float white;                /* the radiance that becomes 1: exposure_white's, unless changed */
+    horizon horizon;            /* set only if shadows are cast and there is an environment */
+    const env_map *environment; /* environment in addition to the lamps, or NULL; borrowed */
+    float white;                /* radiance that becomes 1: by exposure_white, unless changed */
     merlin_relighting how;
 } relighter;
 
-/* Tells whether lamps and surroundings cast shadows. */
+/* Tells whether lamps and environment cast shadows. */
 static inline bool relighter_casts_shadows(const relighter *s)
 {
     return s->how == MERLIN_BY_BRDF || s->how == MERLIN_BY_BRDF_DIRECT;
 }
 
-/* side: the square's pixels a side; 0: as many as the crop has in the photograph. n may be NULL for
+/* Prepares maps. side: the square's pixels per side; 0: as many as the crop has in the photograph. n may be NULL for
  * MERLIN_BY_BRDF_DIRECT. */
 status relighter_new(network *n, const merlin_maps *maps, int side, merlin_relighting how, relighter *out);
 void relighter_free(relighter *s);
-/* Another side for what follows. After a failure the relighter is good for nothing but relighter_free. */
+/* Changes the side. After a failure the relighter may only be freed. */
 status relighter_resize(relighter *s, const merlin_maps *maps, int side);
-/* Takes the gloss away, but for what the relighting decoder paints (docs/notes/rti_domes.md says what for). */
+/* Removes gloss, except for what the relighting decoder paints (docs/notes/rti_domes.md gives the reason). */
 status relighter_make_matte(relighter *s);
-/* Measures the white, a radiance, that leaves all but a thousandth of the object's values under these lamps below 1,
- * and a white matte surface that faces one of them at the object's centre. Shadows and bounces are not looked at, so
- * that it takes a fraction of the time of a picture. Without lamps: of the relighter's environment. */
+/* Measures a white, a radiance below which are all but a thousandth of the object's values under these lamps, and a
+ * white matte surface that faces one of them at the object's centre. It ignores shadows and bounces, and so takes a
+ * fraction of the time of a picture. Without lamps the relighter's environment is used. */
 status relighter_meter(const relighter *s, const lamp *lamps, size_t count, float *white);
-/* The environment (NULL: none) that lights it from now on; another, or the same turned, may follow. */
+/* Sets the environment (NULL: none) for the following pictures; another, or the same one turned, may follow. */
 status relighter_surround(relighter *s, const env_map *environment);
-/* MERLIN_WRONG_USE for a way of relighting that does not exist, or that wants another lamp (NULL: none). */
+/* Fails with MERLIN_WRONG_USE for a method of relighting that does not exist, or that needs another lamp (NULL: none).
+ */
 status relighter_check(merlin_relighting how, const lamp *light, bool environment);
-/* Renders the square under so many lamps together and the relighter's environment, one of all at least and as
- * relighter_check wants them, bounces included unless how leaves them out: 3 channels in [0, 1] of `white`. */
+/* Renders the square under all lamps together and the relighter's environment; at least one of them is needed, as
+ * relighter_check requires. Bounces are included unless `how` excludes them. out: 3 channels in [0, 1] of `white`. */
 status relighter_render(network *n, const relighter *s, const lamp *lights, int count, img *out);
 
 #endif

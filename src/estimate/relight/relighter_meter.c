@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Meters how bright a relighter's pictures become, before they are made. */
+/* Meters the brightness of a relighter's pictures before they are rendered. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -7,9 +7,9 @@
 #include "estimate/light/relight_env.h"
 #include "estimate/relight/relighter.h"
 
-/* Stops above and below 1 that are told apart, by 32 bins each. */
+/* Range of the histogram in stops above and below 1, with 32 bins each. */
 enum { STOPS = 24, BINS_BY_STOP = 32, BINS = 2 * STOPS * BINS_BY_STOP };
-/* A large dome's lamps are looked at up to so many, evenly. */
+/* Largest number of a dome's lamps that are evaluated, evenly chosen. */
 enum { MOST_LAMPS = 100 };
 static const double BRIGHTEST_SHARE = 0.001;
 
@@ -27,7 +27,7 @@ static void note(histogram *h, const img *radiance, const img *mask)
     }
 }
 
-/* Returns the upper end of the bin that the brightest thousandth begins in. */
+/* Returns the upper end of the bin in which the brightest thousandth begins. */
 static float bright_end(const histogram *h)
 {
     size_t above = 0, wanted = (size_t)(BRIGHTEST_SHARE * (double)h->count);
@@ -60,7 +60,7 @@ static status note_environment(const relighter *s, histogram *h)
     return result;
 }
 
-/* Radiance of a white matte surface at (0, 0, -1) that faces the lamp. */
+/* Returns the radiance of a white matte surface at (0, 0, -1) that faces the lamp. */
 static float white_facing(const lamp *l)
 {
     vec3 way = vec3_sub(l->at, vec3_make(0, 0, -1));

@@ -6,7 +6,7 @@
 
 #include "stereo/algebra/dense.h"
 
-enum { MOST_TURNS = 60 }; /* for an eigenvalue; two are usual */
+enum { MOST_TURNS = 60 }; /* for each eigenvalue; two are usual */
 
 static double dot(const double *restrict a, const double *restrict b, size_t n)
 {
@@ -22,7 +22,7 @@ static void add_scaled(double *restrict a, double scale, const double *restrict 
         a[i] += scale * b[i];
 }
 
-/* Writes the upper half below the diagonal as well; false if it is not all numbers. */
+/* Copies the upper half to the lower; returns false if values are not finite. */
 static bool mirror(double *m, size_t n)
 {
     bool numbers = true;
@@ -34,9 +34,9 @@ static bool mirror(double *m, size_t n)
     return numbers;
 }
 
-/* ---- to three diagonals, by reflections (Householder) ---- */
+/* ---- to tridiagonal form, by reflections (Householder) ---- */
 
-/* Makes v the vector across whose plane itself falls on the first axis, and returns where on that axis. */
+/* Replaces v by the vector of the reflection that maps it to the first axis, and returns its coordinate there. */
 static double find_mirror(double *v, size_t n)
 {
     double length = sqrt(dot(v, v, n)), onto = v[0] > 0 ? -length : length;
@@ -44,14 +44,14 @@ static double find_mirror(double *v, size_t n)
     return onto;
 }
 
-/* The share of v that I - share v vᵀ takes away; 0 where v is nothing, and reflects nothing. */
+/* Returns the factor of v vᵀ in the reflection I - factor v vᵀ; 0 if v is zero and reflects nothing. */
 static double share_of(const double *v, size_t n)
 {
     double square = dot(v, v, n);
     return square > 0 ? 2 / square : 0;
 }
 
-/* Reflects the trailing rows and columns, n of them in a matrix of `stride` columns, on both sides; w is scratch. */
+/* Reflects the trailing n rows and columns of a matrix with `stride` columns on both sides; w is scratch. */
 static void reflect_both(double *m, size_t stride, const double *v, double *w, size_t n)
 {
     double share = share_of(v, n);
@@ -64,8 +64,8 @@ static void reflect_both(double *m, size_t stride, const double *v, double *w, s
     }
 }
 
-/* The diagonal and, in the n numbers behind it, what is beside it; the reflections' vectors stay in m's rows, behind
- * the diagonal. */
+/* Computes the diagonal and, in the n numbers behind it, the subdiagonal; the reflections' vectors stay in m's rows
+ * behind the diagonal. */
 static void reduce(double *m, size_t n, double *diagonal)
 {
     double *beside = diagonal + n;
@@ -82,7 +82,7 @@ static void reduce(double *m, size_t n, double *diagonal)
     }
 }
 
-/* Multiplies the reflections out: what turns m into the three diagonals, a row for what will be an eigenvector. */
+/* Multiplies the reflections to the matrix that makes m tridiagonal, with a row for each future eigenvector. */
 static void multiply_out(double *m, size_t n)
 {
     for (size_t k = n; k-- > 0;) {
@@ -97,7 +97,7 @@ static void multiply_out(double *m, size_t n)
     }
 }
 
-/* ---- to one, by rotations (implicit QR steps) ---- */
+/* ---- to diagonal form, by rotations (implicit QR steps) ---- */
 
 static void rotate_rows(double *restrict a, double *restrict b, double c, double s, size_t n)
 {
@@ -108,7 +108,7 @@ static void rotate_rows(double *restrict a, double *restrict b, double c, double
     }
 }
 
-/* The eigenvalue of the last two rows and columns that is closer to the last number (Wilkinson). */
+/* Returns the eigenvalue of the last two rows and columns that is closer to the last number (Wilkinson). */
 static double shift_of(const double *d, const double *e, size_t last)
 {
     double half = (d[last - 1] - d[last]) / 2, beside = e[last - 1];
@@ -116,7 +116,7 @@ static double shift_of(const double *d, const double *e, size_t last)
     return below == 0 ? d[last] : d[last] - beside / below * beside;
 }
 
-/* One step between the rows first and last; rows: n columns of vectors, or NULL. */
+/* Makes one step between the rows first and last; rows: n columns of vectors, or NULL. */
 static void step(double *d, double *e, size_t first, size_t last, double *rows, size_t n)
 {
     double x = d[first] - shift_of(d, e, last), z = e[first];
@@ -156,7 +156,7 @@ static bool diagonalize(double *d, size_t n, double *rows)
     return last == 0;
 }
 
-/* ---- the answer ---- */
+/* ---- the result ---- */
 
 static void sort(double *value, size_t n, double *rows)
 {

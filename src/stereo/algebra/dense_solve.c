@@ -4,7 +4,7 @@
 
 #include "stereo/algebra/dense.h"
 
-/* Rows that are worked on at once: a row that all of them need is read once. */
+/* Number of rows that are processed together, so that a row which all of them need is read once. */
 enum { AT_ONCE = 4 };
 
 static double dot(const double *restrict a, const double *restrict b, size_t n)
@@ -15,7 +15,7 @@ static double dot(const double *restrict a, const double *restrict b, size_t n)
     return sum;
 }
 
-/* The products of four rows, which lie n apart, with one. */
+/* Computes the products of four rows, n values apart, with one. */
 static void dot_four(const double *restrict a, size_t n, const double *restrict b, size_t length, double sum[AT_ONCE])
 {
     const double *restrict a1 = a + n, *restrict a2 = a1 + n, *restrict a3 = a2 + n;
@@ -32,7 +32,7 @@ static void dot_four(const double *restrict a, size_t n, const double *restrict 
     sum[3] = s3;
 }
 
-/* The row's numbers from column `from` on, its diagonal included, those before being done. */
+/* Computes the row's numbers from column `from` on to the diagonal; those before are done. */
 static bool finish_row(double *m, size_t n, size_t i, size_t from)
 {
     double *row = m + i * n;
@@ -43,7 +43,7 @@ static bool finish_row(double *m, size_t n, size_t i, size_t from)
     return square > 0 && isfinite(row[i]);
 }
 
-/* m = L Lᵀ, L in m's lower half (Cholesky). */
+/* Factorizes m = L Lᵀ (Cholesky), with L in m's lower half. */
 static bool factorize(double *m, size_t n)
 {
     size_t i = 0;

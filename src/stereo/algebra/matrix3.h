@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-/* Systems of three equations: a pixel's normal from its values. */
+/* Systems of three equations, for a pixel's normal from its values. */
 #ifndef MERLIN_STEREO_ALGEBRA_MATRIX3_H
 #define MERLIN_STEREO_ALGEBRA_MATRIX3_H
 
 #include "base/vec.h"
 
-/* A symmetric 3×3 matrix (xx, xy, xz, yy, yz, zz) as L D Lᵀ, lightly damped so that a singular one gives the short
- * solution instead of infinity. By pivots, none of them less than the damping: a determinant would be lost in rounding
- * where one light alone made the matrix. */
+/* Factors L D Lᵀ of a symmetric 3×3 matrix (xx, xy, xz, yy, yz, zz), slightly damped so that a singular one gives the
+ * shortest solution instead of infinity. Each pivot is at least the damping; a determinant would be lost in rounding
+ * errors for a matrix from a single light. */
 typedef struct pst_factors {
-    float yx, zx, zy; /* of L, below its diagonal of 1 */
-    float x, y, z;    /* one over D */
+    float yx, zx, zy; /* entries of L below its diagonal of 1 */
+    float x, y, z;    /* reciprocals of D */
 } pst_factors;
 
 static inline pst_factors pst_factor3(float xx, float xy, float xz, float yy, float yz, float zz)
@@ -27,7 +27,7 @@ static inline pst_factors pst_factor3(float xx, float xy, float xz, float yy, fl
     return f;
 }
 
-/* x of L D Lᵀ x = b. */
+/* Returns x of L D Lᵀ x = b. */
 static inline vec3 pst_solve_factored(pst_factors f, vec3 b)
 {
     float y = b.y - f.yx * b.x, z = (b.z - f.zx * b.x - f.zy * y) * f.z;
@@ -40,7 +40,7 @@ static inline vec3 pst_solve3(const float m[6], vec3 b)
     return pst_solve_factored(pst_factor3(m[0], m[1], m[2], m[3], m[4], m[5]), b);
 }
 
-/* Adds a vᵀ, a multiple of v, to a symmetric matrix of that order. */
+/* Adds a vᵀ, where a is a multiple of v, to a symmetric matrix in that order. */
 static inline void pst_add_outer3(float m[6], vec3 a, vec3 v)
 {
     m[0] += a.x * v.x;
@@ -51,7 +51,7 @@ static inline void pst_add_outer3(float m[6], vec3 a, vec3 v)
     m[5] += a.z * v.z;
 }
 
-/* Unit and facing the camera; (0, 0, 1) for what has no direction. */
+/* Returns n as a unit vector that faces the camera; (0, 0, 1) if it is zero. */
 static inline vec3 pst_facing(vec3 n)
 {
     float length = vec3_length(n);

@@ -8,7 +8,7 @@
 #include "stereo/algebra/dense.h"
 
 enum { PASSES = 8, UNKNOWNS = 6 };
-/* Of the quadric: its smallest axis' share of its largest. */
+/* Least ratio of the quadric's smallest axis to its largest. */
 static const double flattest = 0.02;
 
 static double length_of(const double m[9], vec3 v)
@@ -27,7 +27,8 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* As many vectors as there are unknowns can be met whatever they are, and say nothing: the median of the others. */
+/* Returns the median distance without six vectors, as many as unknowns, which any quadric can fit exactly and which
+ * therefore say nothing. */
 static double median_distance(const unit_quadric *q, const vec3 *v, size_t count, double *distance)
 {
     for (size_t i = 0; i < count; i++)
@@ -36,7 +37,7 @@ static double median_distance(const unit_quadric *q, const vec3 *v, size_t count
     return distance[count > UNKNOWNS ? (count + UNKNOWNS) / 2 : count - 1];
 }
 
-/* vᵀ Q v = 1, linear in the six numbers of Q, weighted by how close the last quadric came (Cauchy). */
+/* Solves vᵀ Q v = 1, which is linear in the six numbers of Q, with weights by the last quadric's residuals (Cauchy). */
 static status fit_once(const vec3 *v, size_t count, double width, unit_quadric *q)
 {
     double form[36] = {0}, m[6] = {0}, eigenvalue[6];
@@ -55,7 +56,7 @@ static status fit_once(const vec3 *v, size_t count, double width, unit_quadric *
     if (!solved || !dense_eigen(axis, 3, true, eigenvalue) || !(eigenvalue[2] > 0))
         return fail(MERLIN_BAD_INPUT, "the pictures do not tell lights from surface: are the lights equally strong?");
     for (int j = 0; j < 9; j++) {
-        /* not positive: highlights have bent the factors */
+        /* not positive if highlights have distorted the factors */
         double root = sqrt(fmax(eigenvalue[j / 3], flattest * eigenvalue[2]));
         q->make[j] = root * axis[j % 3 * 3 + j / 3];
         q->dual[j] = axis[j % 3 * 3 + j / 3] / root;

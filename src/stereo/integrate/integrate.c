@@ -8,14 +8,14 @@
 #include "stereo/integrate/integrate_steps.h"
 
 static const double TOLERANCE = 1e-7;
-/* Slopes steeper than 1/this, about 87 degrees, are taken as that. */
+/* Least cosine to the line of sight: steeper slopes, above about 87 degrees, are limited to that. */
 static const real GRAZING = (real)0.05;
-/* What keeps a pair from falling apart when nothing is known of it. */
+/* Least weight, which keeps pairs connected of which nothing is known. */
 static const float LEAST_WEIGHT = 1e-6f;
 
 /* ---- steps between neighbours ---- */
 
-/* Zero if there is none or it is not finite. */
+/* Returns a node's normal; zero if there is none or it is not finite. */
 static vec3 normal_at(const integration_steps *s, int node)
 {
     const float *n = s->normal->data + 3 * (size_t)s->grid.pixel[node];
@@ -31,7 +31,8 @@ static vec3 ray_of(const integration_steps *s, int node)
     return vec3_make(((real)x + (real)0.5 - c->x) / c->focal, (c->y - (real)y - (real)0.5) / c->focal, -1);
 }
 
-/* cos of the angle between m and the line of sight at a node, at least GRAZING; times the ray's length. */
+/* Returns the cosine of the angle between m and the line of sight at a node, at least GRAZING, times the ray's length.
+ */
 static real facing_at(const integration_steps *s, int node, vec3 m)
 {
     vec3 ray = ray_of(s, node);
@@ -39,7 +40,8 @@ static real facing_at(const integration_steps *s, int node, vec3 m)
     return facing > least ? facing : least;
 }
 
-/* x[to] − x[from] for `to` the next of `from` in the direction, along a chord perpendicular to m (not zero). */
+/* Returns x[to] − x[from], for `to` the neighbour of `from` in the direction, along a chord perpendicular to m (not
+ * zero). */
 static real step_to(const integration_steps *s, int direction, int to, vec3 m)
 {
     real across = direction == 0 ? m.x : -m.y, step = across / facing_at(s, to, m);
@@ -48,8 +50,9 @@ static real step_to(const integration_steps *s, int direction, int to, vec3 m)
     return log1p(step > (real)-0.9 ? step : (real)-0.9);
 }
 
-/* The chord of a circular arc is perpendicular to the sum of the normals at its ends, so planes and spheres come out
- * exact. An error of the normal's angle changes the slope by 1/cos² of it: hence cos⁴ as weight. */
+/* Sets steps and weights. The chord of a circular arc is perpendicular to the sum of the normals at its ends, so that
+ * planes and spheres are exact. An error of the normal's angle changes the slope by 1/cos² of it, hence the weight
+ * cos⁴. */
 static void weigh_by_facing(integration_steps *s)
 {
     poisson_grid *g = &s->grid;
@@ -74,7 +77,7 @@ static bool has_prior(const pst_integration *o)
     return o->prior && o->prior_weight > 0;
 }
 
-/* The unknown that a prior stands for, if it knows the pixel. */
+/* Computes the unknown that corresponds to the prior; returns false if there is none at the pixel. */
 static bool prior_at(const integration_steps *s, const pst_integration *o, int node, double *x)
 {
     float depth = o->prior->data[s->grid.pixel[node]];
@@ -83,8 +86,8 @@ static bool prior_at(const integration_steps *s, const pst_integration *o, int n
     return true;
 }
 
-/* A prior pulls every pixel it knows; a piece without one is held at its first pixel, which changes nothing but its
- * constant. held: count of pieces. */
+/* Pulls every pixel toward its prior. A piece without a prior is held at its first pixel, which determines only its
+ * constant. held: number of pieces. */
 static void anchor(integration_steps *s, const pst_integration *o, int *held)
 {
     poisson_grid *g = &s->grid;
@@ -110,7 +113,7 @@ static void start_from_prior(const integration_steps *s, const pst_integration *
         prior_at(s, o, i, &x[i]);
 }
 
-/* Pieces without a prior get mean 0. */
+/* Gives pieces without a prior the mean 0. */
 static status center(const poisson_grid *g, const int *held, double *x)
 {
     const int *piece = g->piece, pieces = g->pieces;
@@ -145,7 +148,7 @@ static void write_depth(const integration_steps *s, const int *held, const doubl
     }
 }
 
-/* x: count entries. */
+/* Solves for x, which has count entries. */
 static status solve(integration_steps *s, const pst_integration *o, double *x, img *depth)
 {
     int *held = calloc((size_t)s->grid.pieces, sizeof *held);

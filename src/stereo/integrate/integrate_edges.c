@@ -5,22 +5,22 @@
 
 #include "stereo/integrate/integrate_steps.h"
 
-/* The sharpness k of the paper, per square pixel of misfit. The paper holds it at 2 from the first round on, where the
- * least-squares surface has spread every jump over its surroundings: no pair is off by much, both sides of a pixel
- * look alike, and the weights stay where they were. A sharpness that grows slowly lets the first faint differences
- * gather along the jump before any pair is given up for good (graduated non-convexity, Blake & Zisserman 1987). It ends
- * where a tenth of a pixel still counts as noise: real normals do not fit together better than that. */
+/* Range and growth of the paper's sharpness k, per square pixel of misfit. The paper uses 2 from the first round on,
+ * where the least-squares surface has spread every jump over its surroundings: no pair has a large misfit, both sides
+ * of a pixel look alike, and the weights do not change. A slowly growing sharpness lets the first faint differences
+ * accumulate along the jump before any pair is cut for good (graduated non-convexity, Blake & Zisserman 1987). It ends
+ * where a tenth of a pixel still counts as noise, as real normals are not more consistent than that. */
 static const double FIRST_SHARPNESS = 2, LAST_SHARPNESS = 100, GROWTH = 1.08;
-/* Where the jumps are in x from the first, it need not grow so slowly. */
+/* The same if x has its jumps from the start, when the sharpness can grow faster. */
 static const double STEPPED_SHARPNESS = 10, STEPPED_GROWTH = 3;
 static const double TOLERANCE = 1e-6;
-static const float LEAST_WEIGHT = 1e-6f; /* keeps the system definite where both sides of a pair are given up */
+static const float LEAST_WEIGHT = 1e-6f; /* keeps the system definite where both sides of a pair are cut */
 
-/* Of the pair of a node with its next, by direction. */
+/* Values of the pairs of nodes with their next neighbours, by direction. */
 typedef struct pairs {
-    float *base[2];   /* least squares' weight */
-    float *misfit[2]; /* squared, in pixels along the normal */
-    float *along[2];  /* the mean with the pairs beside it: a jump is a line, not a point */
+    float *base[2];   /* weight by least squares */
+    float *misfit[2]; /* squared misfit in pixels along the normal */
+    float *along[2];  /* misfit averaged with the adjacent pairs, as a jump is a line, not a point */
 } pairs;
 
 static void pairs_free(pairs *p)
@@ -69,7 +69,7 @@ static void find_misfits(const integration_steps *s, const double *x, int k, pai
     }
 }
 
-/* The paper's eq. 14: how much node i believes the pair with its next more than the one with its previous. */
+/* Returns the weight of node i for its next neighbour relative to its previous one (the paper's eq. 14). */
 static float share_of_next(const poisson_grid *g, const pairs *p, int k, int i, double sharpness)
 {
     int before = g->previous[k][i];
@@ -77,7 +77,7 @@ static float share_of_next(const poisson_grid *g, const pairs *p, int k, int i, 
     return (float)(1 / (1 + exp(sharpness * (double)(p->along[k][i] - p->along[k][before]))));
 }
 
-/* Both ends of a pair have their say. */
+/* Sets the weights of pairs from those of both ends. */
 static void reweigh(const poisson_grid *g, const pairs *p, int k, double sharpness)
 {
 #pragma omp parallel for schedule(static)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What both ways of integrating share: the neighbours, and the unknown that steps from one to the next. Internal.
+/* Neighbours and steps between them, shared by both methods of integration. Internal.
  *
  * The unknown x is depth in pixels (orthographic) or the logarithm of depth (perspective; Quéau, Durou & Aujol 2018,
  * "Normal integration: a survey"). A surface point is d r with the pixel's ray r = ((u − cx)/f, −(v − cy)/f, −1). The
@@ -17,8 +17,9 @@ typedef struct integration_steps {
     const watch *watch;
 } integration_steps;
 
-/* Bilaterally weighted least squares (Cao et al., ECCV 2022, "Bilateral normal integration") from least squares' x: one
- * solution after another, each side of a pixel weighed by how well the other fits. stepped: x has its steps already. */
+/* Integrates by bilaterally weighted least squares (Cao et al., ECCV 2022, "Bilateral normal integration"), starting
+ * from x: repeated solutions in which each side of a pixel is weighted by the fit of the other. stepped: x already has
+ * its jumps. */
 status integrate_edges(integration_steps *s, poisson_solver *solver, bool stepped, double *x);
 
 #endif

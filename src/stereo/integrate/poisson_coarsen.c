@@ -5,29 +5,29 @@
 #include "base/parallel.h"
 #include "stereo/integrate/poisson_level.h"
 
-/* A link below this share of the strongest of both its ends joins nothing (docs/notes/depth_from_normals.md). */
+/* Share of the strongest link of both its ends below which a link joins no nodes (docs/notes/depth_from_normals.md). */
 static const float STRONG = 0.1f;
-/* A function that is constant over 2 × 2 blocks is stiffer than the smooth one it stands for: twice in two dimensions.
- * Coarse weights are divided by nearly that, as in Braess 1995, "Towards algebraic multigrid for elliptic problems of
- * second order". */
+/* Divisor of coarse weights. A function that is constant over 2 × 2 blocks is stiffer than the smooth one that it
+ * represents, twice in two dimensions; the divisor is nearly that, as in Braess 1995, "Towards algebraic multigrid for
+ * elliptic problems of second order". */
 static const float STIFFNESS = 1.8f;
 
 /* ---- joining ---- */
 
-/* Strips of the fine level, on whose even number of rows no block of the coarse one is shared. */
+/* Work on strips of the fine level, whose even numbers of rows share no block of the coarse one. */
 typedef struct coarsening {
     poisson_level *fine;
     poisson_graph *coarse;
-    int *block;               /* of each fine node, on the coarse level */
-    float *strongest;         /* of each fine node's links */
-    int made[POISSON_STRIPS]; /* coarse nodes of a strip; then how many there are before it */
-    int *room;                /* where the links of each coarse node may begin, several of the fine ones apart */
-    int *links;               /* how many of them there are */
+    int *block;               /* index of each fine node's block on the coarse level */
+    float *strongest;         /* strongest link of each fine node */
+    int made[POISSON_STRIPS]; /* number of coarse nodes in a strip, later of those before it */
+    int *room;  /* upper bound of each coarse node's first link, with several fine ones counted separately */
+    int *links; /* numbers of links */
     int *neighbour;
     float *weight;
 } coarsening;
 
-/* Of a fine node. */
+/* The links of a fine node. */
 typedef struct links {
     int count;
     const int *node;
@@ -76,7 +76,8 @@ static void look_at_nodes(const coarsening *c, int begin, int end)
     }
 }
 
-/* begin: the strip's first node, before which another thread is at work. */
+/* Joins nodes i and j if their link is strong. begin: the strip's first node; nodes before it belong to another thread.
+ */
 static void join(const coarsening *c, int begin, int i, int j, float weight)
 {
     if (j < begin || j >= i || c->block[i] != c->block[j]) return;
@@ -84,7 +85,7 @@ static void join(const coarsening *c, int begin, int i, int j, float weight)
     poisson_join(c->fine->parent, i, j);
 }
 
-/* Parents become the least node of those joined. */
+/* Makes the least of the joined nodes their parent. */
 static void join_strip(void *context, size_t strip)
 {
     coarsening *c = context;
@@ -99,12 +100,12 @@ static void join_strip(void *context, size_t strip)
     }
     c->made[strip] = 0;
     for (int i = begin; i < end; i++) {
-        parent[i] = parent[parent[i]]; /* a root already, since smaller nodes point to theirs */
+        parent[i] = parent[parent[i]]; /* is a root, since smaller nodes already point to theirs */
         c->made[strip] += parent[i] == i;
     }
 }
 
-/* And then its number. */
+/* Replaces parents by the coarse nodes' indices. */
 static void number_strip(void *context, size_t strip)
 {
     coarsening *c = context;
@@ -168,7 +169,7 @@ static void pack_links(const coarsening *c)
     }
 }
 
-/* Counts become the sums of those before; returns the sum of all. */
+/* Computes running sums of the counts before each entry; returns the total. */
 static int add_up(const int *count, int n, int *before)
 {
     int sum = 0;

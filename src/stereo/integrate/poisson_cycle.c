@@ -4,7 +4,7 @@
 #include "base/parallel.h"
 #include "stereo/integrate/poisson_level.h"
 
-/* A level that is not smaller than this share of the last is no help. */
+/* Largest useful size of a level, as a share of the previous one. */
 static const double LEAST_GAIN = 0.8;
 
 static bool more_levels(const poisson_stack *s)
@@ -34,15 +34,16 @@ void poisson_stack_free(poisson_stack *s)
     poisson_factor_free(s->factor);
 }
 
-/* From one level to the next and back. */
+/* Work between one level and the next. */
 typedef struct passage {
     const poisson_level *fine, *coarse;
     const double *b;
     double *x;
-    bool odd; /* which half of the chessboard */
+    bool odd; /* which colour of the checkerboard */
 } passage;
 
-/* Gauss-Seidel on one half of the chessboard, whose nodes have their neighbours in the other, or in their own block. */
+/* Makes a Gauss-Seidel step at a node of one colour of the checkerboard, whose neighbours have the other or are in its
+ * own block. */
 static void smooth_at(const passage *p, int i)
 {
     const poisson_level *l = p->fine;
@@ -58,7 +59,7 @@ static void smooth_strip(void *context, size_t strip)
         smooth_at(p, i);
 }
 
-/* The other way around, so that the cycle as a whole is symmetric. */
+/* Smooths in reverse order, so that the whole cycle is symmetric. */
 static void smooth_strip_back(void *context, size_t strip)
 {
     const passage *p = context;
@@ -66,7 +67,7 @@ static void smooth_strip_back(void *context, size_t strip)
         smooth_at(p, i);
 }
 
-/* The pixels that were smoothed last have no residual. */
+/* Restricts the residual; it is zero at the pixels that were smoothed last. */
 static void restrict_strip(void *context, size_t strip)
 {
     const passage *p = context;
@@ -75,7 +76,7 @@ static void restrict_strip(void *context, size_t strip)
         if (!l->grid || !l->odd[i]) p->coarse->b[l->parent[i]] += poisson_residual(l, i, p->b, p->x);
 }
 
-/* The pixels that are smoothed first need no correction. */
+/* Adds the correction; pixels that are smoothed first do not need it. */
 static void correct_strip(void *context, size_t strip)
 {
     const passage *p = context;
@@ -90,7 +91,7 @@ static void smooth(passage *p, bool odd, void (*strip)(void *context, size_t i))
     parallel_for(POISSON_STRIPS, strip, p);
 }
 
-/* Even and odd nodes, correction from the coarser level, odd and even nodes. */
+/* Runs a cycle: even and odd nodes, correction from the coarser level, odd and even nodes. */
 static status cycle(poisson_stack *s, int at, const double *b, double *x)
 {
     if (at == s->depth - 1) return poisson_factor_solve(s->factor, b, x);

@@ -8,7 +8,7 @@
 #include "base/library.h"
 #include "base/memory.h"
 
-/* Loaded when it is first needed. */
+/* The library's functions, loaded when first needed. */
 static struct {
     __typeof__(cholmod_start) *start;
     __typeof__(cholmod_finish) *finish;
@@ -34,12 +34,12 @@ static const library_function wanted[] = {
 };
 static library libcholmod = {.file = MERLIN_CHOLMOD, .functions = wanted, .count = sizeof wanted / sizeof *wanted};
 
-static const size_t for_blas = (size_t)512 << 20; /* bytes: a buffer is a quarter of it */
+static const size_t for_blas = (size_t)512 << 20; /* bytes; a buffer is a quarter of it */
 
 struct poisson_factor {
     int count;
     cholmod_common common;
-    cholmod_sparse *matrix; /* lower half, a column a node */
+    cholmod_sparse *matrix; /* lower half, one column per node */
     cholmod_factor *factor;
 };
 
@@ -51,8 +51,8 @@ static status refuse(const poisson_factor *f)
                 f->common.status);
 }
 
-/* A column a node: its links to later ones. The diagonal is summed up from what stands there, since a link's weight may
- * be rounded another way at its other end, and weak ones must not make the whole indefinite. */
+/* Fills the matrix, one column per node with its links to later ones. The diagonal is summed from these entries, since
+ * a link's weight may be rounded differently at its other end, and weak links must not make the whole indefinite. */
 static void fill(poisson_factor *f, const poisson_graph *g)
 {
     int *start = f->matrix->p, *row = f->matrix->i, at = 0;
@@ -75,8 +75,8 @@ static void fill(poisson_factor *f, const poisson_graph *g)
         }
 }
 
-/* Supernodes go through a BLAS, and OpenBLAS waits for ever where it gets no memory; METIS ends the program. Up to
- * POISSON_DIRECT unknowns neither is quicker. */
+/* Starts CHOLMOD without supernodes and METIS: supernodes use a BLAS, and OpenBLAS waits forever if it gets no memory;
+ * METIS ends the program. Up to POISSON_DIRECT unknowns neither is faster. */
 static void start(cholmod_common *common, int count)
 {
     cholmod.start(common);

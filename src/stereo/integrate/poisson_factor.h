@@ -8,7 +8,7 @@
 typedef struct poisson_factor poisson_factor;
 status poisson_factor_new(const poisson_graph *g, poisson_factor **out);
 void poisson_factor_free(poisson_factor *f);
-/* x = A⁻¹ b; may be the same array. */
+/* Computes x = A⁻¹ b; both may be the same array. */
 status poisson_factor_solve(poisson_factor *f, const double *b, double *x);
 
 #endif

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* The levels of the Poisson solver above its grid: blocks of pixels as nodes, with links between them. Internal. */
+/* Graphs of the Poisson solver's levels above its grid: blocks of pixels as nodes, with links between them. Internal.
+ */
 #ifndef MERLIN_STEREO_INTEGRATE_POISSON_GRAPH_H
 #define MERLIN_STEREO_INTEGRATE_POISSON_GRAPH_H
 
 #include "stereo/integrate/poisson.h"
 
-/* The operator's diagonal at an unknown of the grid. */
+/* Returns the operator's diagonal at an unknown of the grid. */
 static inline double poisson_grid_diagonal(const poisson_grid *g, int i)
 {
     double d = (double)g->pull[i] + (double)g->weight[0][i] + (double)g->weight[1][i];
@@ -14,21 +15,21 @@ static inline double poisson_grid_diagonal(const poisson_grid *g, int i)
     return d;
 }
 
-/* A node stands for pixels of one block, of 2^k × 2^k of them; a block may have several. Links lead from a block to
- * those beside, above and below it; weak ones, at a jump, also from node to node of one block. */
+/* Nodes and links. A node stands for pixels of one block of 2^k × 2^k; a block may have several nodes. Links lead to
+ * the blocks to the left and right, above and below; weak ones, at a jump, also between nodes of one block. */
 typedef struct poisson_graph {
-    int count, width, height; /* width, height: in blocks */
-    int *block;               /* count: y × width + x, row by row, in a row in any order */
-    int *start;               /* count + 1: where a node's links begin */
-    int *neighbour;           /* start[count] */
-    float *weight;            /* start[count]: of the link */
-    double *pull, *diagonal;  /* count */
+    int count, width, height; /* width and height in blocks */
+    int *block;               /* count: y × width + x, row by row, within a row in any order */
+    int *start;               /* count + 1: index of a node's first link */
+    int *neighbour;           /* start[count]: node at the other end */
+    float *weight;            /* start[count]: weight of the link */
+    double *pull, *diagonal;  /* count each */
 } poisson_graph;
 
-/* Makes the graph of a grid, one node a pixel. */
+/* Makes the graph of a grid, with one node per pixel. */
 status poisson_graph_of(const poisson_grid *g, poisson_graph *out);
 void poisson_graph_free(poisson_graph *g);
-/* Allocates arrays of count entries, zero; links are another matter. */
+/* Allocates the arrays of count entries, zeroed, but not those of links. */
 status poisson_graph_allocate(poisson_graph *g);
 status poisson_graph_allocate_links(poisson_graph *g, int links);
 

@@ -37,7 +37,7 @@ static void link_neighbours(poisson_grid *g)
     }
 }
 
-/* Union-find: a node joins the pieces of those before it. */
+/* Numbers the connected pieces by union-find: a node joins the pieces of its neighbours before it. */
 static void number_pieces(poisson_grid *g)
 {
     int *piece = g->piece;
@@ -47,7 +47,7 @@ static void number_pieces(poisson_grid *g)
             if (g->previous[k][i] >= 0) poisson_join(piece, i, g->previous[k][i]);
     }
     for (int i = 0; i < g->count; i++)
-        piece[i] = piece[piece[i]]; /* a root already, since smaller nodes point to theirs */
+        piece[i] = piece[piece[i]]; /* is a root, since smaller nodes already point to theirs */
     for (int i = 0; i < g->count; i++)
         piece[i] = piece[i] == i ? g->pieces++ : piece[piece[i]];
 }

@@ -3,7 +3,7 @@
 
 #include "base/memory.h"
 
-/* The first node of a row or of those behind it. */
+/* Returns the first node of a row or of the rows after it. */
 static int first_from(const poisson_level *l, int row)
 {
     int low = 0, high = l->count, width = poisson_width(l);

@@ -7,18 +7,18 @@
 #include "base/parallel.h"
 #include "stereo/integrate/poisson_level.h"
 
-/* Of conjugate gradients; more than a new stack took that an old one may take. */
+/* Largest number of steps of conjugate gradients, and how many more than with a new stack an old one may take. */
 enum { MOST_STEPS = 100, MORE_STEPS = 3 };
-/* Tolerances that may be left after the last step. */
+/* Largest residual after the last step, in units of the tolerance. */
 static const double MOST_ASTRAY = 100;
 
 struct poisson_solver {
     const poisson_grid *grid;
     poisson_stack stack;
-    double *b, *r, *z, *p, *product; /* all but b only if the grid is not factorized itself */
-    double *x;                       /* the caller's */
-    double length, turn;             /* of a step of the conjugate gradients */
-    int steps_at_first;              /* that a solution took with the stack just made; 0: it is to be made anew */
+    double *b, *r, *z, *p, *product; /* b, and arrays that are needed only if the grid is not factorized itself */
+    double *x;                       /* the caller's array */
+    double length, turn;             /* step length of the conjugate gradients, and their update of the direction */
+    int steps_at_first;              /* number of steps with the stack when it was new; 0: it must be rebuilt */
     double sum[POISSON_STRIPS];
 };
 
@@ -64,7 +64,7 @@ static void right_hand_side(const poisson_grid *g, double *b)
     }
 }
 
-/* ---- conjugate gradients, a strip at a time ---- */
+/* ---- conjugate gradients, by strips ---- */
 
 typedef double strip_work(poisson_solver *s, int begin, int end);
 
@@ -80,7 +80,7 @@ static void work_on(void *context, size_t i)
     job->solver->sum[i] = job->work(job->solver, strip[i], strip[i + 1]);
 }
 
-/* The strips' sum. */
+/* Returns the sum over the strips. */
 static double over_strips(poisson_solver *s, strip_work *work)
 {
     double sum = 0;
@@ -98,7 +98,7 @@ static double square_of_b(poisson_solver *s, int begin, int end)
     return sum;
 }
 
-/* r = b − A x; r·r */
+/* Computes r = b − A x; returns r·r. */
 static double start(poisson_solver *s, int begin, int end)
 {
     const poisson_level *finest = &s->stack.levels[0];
@@ -126,7 +126,7 @@ static double turn(poisson_solver *s, int begin, int end)
     return 0;
 }
 
-/* p·(A p), with A p left in product. */
+/* Computes product = A p; returns p·product. */
 static double apply(poisson_solver *s, int begin, int end)
 {
     const poisson_level *finest = &s->stack.levels[0];
@@ -138,7 +138,7 @@ static double apply(poisson_solver *s, int begin, int end)
     return sum;
 }
 
-/* x and r go on; r·r */
+/* Updates x and r; returns r·r. */
 static double step(poisson_solver *s, int begin, int end)
 {
     double sum = 0;
@@ -150,11 +150,11 @@ static double step(poisson_solver *s, int begin, int end)
     return sum;
 }
 
-/* *left: of the residual's square, in times of what is enough; *steps: up to `most` that were made. */
+/* Iterates. *left: squared residual relative to the required one; *steps: number of steps made, at most `most`. */
 static status conjugate_gradients(poisson_solver *s, double tolerance, int most, int *steps, double *left)
 {
     double enough = tolerance * tolerance * over_strips(s, square_of_b), energy = 0, square = over_strips(s, start);
-    if (!(enough > 0)) { /* b = 0 */
+    if (!(enough > 0)) { /* b is zero */
         memset(s->x, 0, (size_t)s->grid->count * sizeof *s->x);
         square = 0;
     }
@@ -174,7 +174,7 @@ static status conjugate_gradients(poisson_solver *s, double tolerance, int most,
     return OK;
 }
 
-/* The whole of it, whatever memory that takes. */
+/* Factorizes the whole grid, whatever memory it takes. */
 static status factorize(const poisson_solver *s)
 {
     poisson_graph graph;
@@ -193,7 +193,7 @@ static status build(poisson_solver *s)
     return poisson_stack_new(s->grid, &s->stack);
 }
 
-/* A stack that was made for other weights is as good as any until it takes too many steps. */
+/* Solves by iteration. A stack that was built for other weights is used until it takes too many steps. */
 static status iterate(poisson_solver *s, double tolerance)
 {
     int steps, most = s->steps_at_first + MORE_STEPS;

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-/* By atan2, for acos of the dot product alone loses all digits near zero. */
+/* Uses atan2, as acos of the dot product loses all precision near zero. */
 double normal_angle(vec3 a, vec3 b)
 {
     static const double DEGREES = 57.29577951308232;
