@@ -23,7 +23,7 @@ merlin_status merlin_image_read(const char *path, merlin_image *color, merlin_im
 /* Coverage, 1 channel in [0, 1]: by the file's alpha unless that is even, else of two values, whatever they are, the
  * greater one, else white on black. Areas of more than two values are MERLIN_BAD_INPUT. */
 merlin_status merlin_mask_read(const char *path, merlin_image *mask);
-/* 8-bit sRGB PNG, values clamped to [0, 1]; path ends in .png. */
+/* 8-bit sRGB, values clamped to [0, 1]; path ends in .png, or in .jpg (3 channels, of high quality). */
 merlin_status merlin_image_write(const char *path, const merlin_image *image);
 void merlin_image_free(merlin_image *image);
 

@@ -84,6 +84,11 @@ Params = _struct("params", [
     ("flash", c_int), ("fov", c_float), ("hint", Hint), ("last", c_int)])
 Object = _struct("object", [("mask", Image), ("source", c_int), ("confidence", c_float), ("seconds", c_double)])
 
+# ---- pictures.h ----
+
+PNG, JPEG = range(2)
+Tile = _struct("tile", [("label", c_char_p), ("picture", POINTER(Image))])
+
 # ---- relight.h ----
 
 BY_BRDF, BY_NETWORK, BY_BRDF_UNSHADOWED, BY_BRDF_DIRECT = range(4)
@@ -158,6 +163,14 @@ FUNCTIONS: Dict[str, Tuple[Any, List[Any]]] = {
     "image_from_pixels": (c_int, [c_void_p, _at(PixelLayout), _at(Image), _at(Image)]),
     "mask_from_pixels": (c_int, [c_void_p, _at(PixelLayout), _at(Image)]),
     "image_to_pixels": (c_int, [_at(Image), _at(Image), _at(PixelLayout), c_void_p]),
+    "image_resize": (c_int, [_at(Image), c_int, c_int, _at(Image)]),
+    "image_encode": (c_int, [_at(Image), c_int, _at(c_void_p), _at(c_size_t)]),
+    "mask_write": (c_int, [_at(Image), c_char_p]),
+    "sheet_write": (c_int, [_at(Tile), c_int, c_int, c_int, c_char_p]),
+    "animation_new": (c_int, [c_int, c_int, c_int, _out]),
+    "animation_add": (c_int, [_handle, _at(Image)]),
+    "animation_write": (c_int, [_handle, c_char_p, c_int]),
+    "animation_free": (None, [_handle]),
     "files_free": (None, [_at(Files)]),
     "model_open": (c_int, [c_char_p, _out]),
     "model_add_flash": (c_int, [_handle, c_char_p]),

@@ -33,6 +33,7 @@ typedef struct work {
     merlin_weights weights;
     merlin_maps made;
     merlin_mesh mesh;
+    char *text; /* of their report */
     merlin_image picture;
     uint64_t first; /* sum of what the first run gave; 0: there was none */
 } work;
@@ -180,6 +181,26 @@ static const char *check_folder(void *context, int result)
     return count ? "files" : NULL;
 }
 
+static int report_maps(void *context)
+{
+    work *w = context;
+    w->text = (char *)w;
+    return merlin_maps_report(&w->maps, &w->text);
+}
+
+static const char *check_text(void *context, int result)
+{
+    work *w = context;
+    const char *fault = NULL;
+    if (result == MERLIN_OK)
+        fault = is_as_ever(w, sum_of(1, w->text, strlen(w->text)));
+    else if (w->text)
+        return "a text";
+    free(w->text);
+    w->text = NULL;
+    return fault;
+}
+
 static int read_maps(void *context)
 {
     work *w = context;
@@ -287,6 +308,11 @@ static void lack_of_memory_writes_no_maps(void **state)
     each_allocation_fails(&(memory_trial){"maps_write", write_maps, check_folder, *state});
 }
 
+static void lack_of_memory_reports_no_maps(void **state)
+{
+    each_allocation_fails(&(memory_trial){"maps_report", report_maps, check_text, *state});
+}
+
 static void lack_of_memory_reads_no_maps(void **state)
 {
     each_allocation_fails(&(memory_trial){"maps_read", read_maps, check_maps, *state});
@@ -377,6 +403,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(lack_of_memory_reads_no_weights, set_up, tear_down),
         cmocka_unit_test_setup_teardown(lack_of_memory_makes_no_maps, set_up, tear_down),
         cmocka_unit_test_setup_teardown(lack_of_memory_writes_no_maps, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(lack_of_memory_reports_no_maps, set_up, tear_down),
         cmocka_unit_test_setup_teardown(lack_of_memory_reads_no_maps, set_up, tear_down),
         cmocka_unit_test_setup_teardown(lack_of_memory_makes_no_mesh, set_up, tear_down),
         cmocka_unit_test_setup_teardown(lack_of_memory_relights_nothing, set_up, tear_down),

@@ -90,11 +90,11 @@ static void an_alpha_that_shows_nothing_is_refused_by_its_name(void **state)
     merlin_image_free(&color);
 }
 
-static void only_names_of_pngs_are_written_to(void **state)
+static void only_names_of_pngs_and_jpegs_are_written_to(void **state)
 {
     const fixture *f = *state;
     char path[96];
-    snprintf(path, sizeof path, "%s/photo.jpg", f->folder);
+    snprintf(path, sizeof path, "%s/photo.tiff", f->folder);
     assert_int_equal(merlin_image_write(path, &f->photo), MERLIN_WRONG_USE);
     assert_non_null(strstr(merlin_error(), ".png"));
     assert_false(file_exists(path));
@@ -304,7 +304,7 @@ int main(void)
         cmocka_unit_test(an_object_too_thin_for_the_networks_pixels_is_refused_as_that),
         cmocka_unit_test(a_photograph_that_is_too_large_is_refused_before_it_is_decoded),
         cmocka_unit_test(an_alpha_that_shows_nothing_is_refused_by_its_name),
-        cmocka_unit_test(only_names_of_pngs_are_written_to),
+        cmocka_unit_test(only_names_of_pngs_and_jpegs_are_written_to),
         cmocka_unit_test(maps_of_impossible_frames_are_refused),
         cmocka_unit_test(null_pointers_are_refused_and_freed),
         cmocka_unit_test(what_was_to_be_filled_in_is_empty_after_wrong_use),

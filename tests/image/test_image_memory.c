@@ -11,6 +11,7 @@
 #include "image/read/read.h"
 #include "image/write/figure.h"
 #include "image/write/write.h"
+#include "merlin/pictures.h"
 #include "writes.h"
 
 enum { WIDTH = 12, HEIGHT = 8 };
@@ -252,6 +253,16 @@ static status write_chart(const char *path, const img *image)
     return figure_chart(path, "training", "steps", "loss", false, &curve, 1);
 }
 
+static status write_animation(const char *path, const img *image)
+{
+    merlin_animation *turn = NULL;
+    status s = merlin_animation_new(image->width, image->height, 2, &turn);
+    if (s == OK) s = merlin_animation_add(turn, image);
+    if (s == OK) s = merlin_animation_write(turn, path, 100);
+    merlin_animation_free(turn);
+    return s;
+}
+
 static void writes_or_says_that_there_is_no_memory(const char *name, status (*write)(const char *, const img *))
 {
     writing w = {.path = scratch_path(name), .write = write, .image = picture_of(3)};
@@ -274,6 +285,7 @@ static void lack_of_memory_beside_libvips_leaves_no_picture(void **state)
     (void)state;
     failing_memory_of_libraries(false);
     writes_or_says_that_there_is_no_memory("w.webp", img_write_webp);
+    writes_or_says_that_there_is_no_memory("turn.webp", write_animation);
     writes_or_says_that_there_is_no_memory("chart.png", write_chart);
     failing_memory_of_libraries(true);
 }

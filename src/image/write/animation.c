@@ -59,23 +59,16 @@ static status check(const img_animation *a, const char *path)
 }
 
 /* Saves the image with the page height and delays that libvips' writers expect. */
-static int save(const img_animation *a, const char *path, int milliseconds, void **data, size_t *size)
+static int save(const img_animation *a, const char *path, const int *delays, void **data, size_t *size)
 {
-    int *delays = calloc((size_t)a->count, sizeof *delays);
-    VipsImage *image = delays ? wrap(a) : NULL;
-    if (!image) {
-        free(delays);
-        return -1;
-    }
-    for (int i = 0; i < a->count; i++)
-        delays[i] = milliseconds;
+    VipsImage *image = wrap(a);
+    if (!image) return -1;
     vips()->image_set_int(image, VIPS_META_PAGE_HEIGHT, a->height);
     vips()->image_set_int(image, "loop", 0);
     vips()->image_set_array_int(image, "delay", delays, a->count);
     int failed = file_ends_in(path, ".gif") ? vips()->gifsave_buffer(image, data, size, NULL)
                                             : vips()->webpsave_buffer(image, data, size, "Q", 90, "effort", 3, NULL);
     vips()->g_object_unref(image);
-    free(delays);
     return failed;
 }
 
@@ -86,11 +79,16 @@ status img_animation_write(const img_animation *a, const char *path, int millise
     if (s != OK) return s;
     void *data = NULL;
     size_t size = 0;
-    if (save(a, path, milliseconds, &data, &size))
+    int *delays = calloc((size_t)a->count, sizeof *delays);
+    if (!delays) return fail(MERLIN_NO_MEMORY, "no memory to write %s", path);
+    for (int i = 0; i < a->count; i++)
+        delays[i] = milliseconds;
+    if (save(a, path, delays, &data, &size))
         s = vips_refusal(MERLIN_CANNOT_WRITE, "write", path);
     else
         s = file_write(path, data, size);
     vips()->g_free(data);
+    free(delays);
     return s;
 }
 
