@@ -3,6 +3,8 @@
 # merlin serve from outside: what it answers, to whom, and what strangers cannot do to it.
 # shellcheck source=tests/cli/support/check.bash
 source "$(dirname "$0")/support/check.bash"
+# shellcheck source=tests/cli/support/pictures.bash
+source "$(dirname "$0")/support/pictures.bash"
 # shellcheck source=tests/cli/support/server.bash
 source "$(dirname "$0")/support/server.bash"
 export OMP_WAIT_POLICY=passive # other tests may run beside this one
@@ -42,6 +44,45 @@ fetches "$mask" photo.png photo.png
 painted=$(submit estimate -F photo=@"$demo" -F mask=@mask.png -F size=256 -F view=0)
 told "$painted" | grep -q '"state":"done"' || complain "a small mask: $(told "$painted")"
 told "$painted" | grep -q viewer.html && complain "view=0 makes a viewer"
+
+echo "pictures in other light are merlin relight's, of maps here, sent and made"
+maps=$(submit estimate -F photo=@"$demo" -F view=0)
+"$MERLIN" relight own --light 0.7,0.3,-0.4 -o relit -q
+relit=$(submit relight -F job="$maps" -F light=0.7,0.3,-0.4)
+fetches "$relit" relit.png got
+cmp -s got relit/relit.png || complain "relight of a job is another than merlin relight's: $(told "$relit")"
+relit=$(submit relight -F "maps=@own/maps.exr;filename=my maps.exr" -F light=0.7,0.3,-0.4 -F by=direct -F light=0,0,0)
+told "$relit" | grep -q 'relit_000.png.*relit_001.png' || complain "two lights: $(told "$relit")"
+"$MERLIN" relight own --light 0.7,0.3,-0.4 --no-bounces -o relit -q
+fetches "$relit" relit_000.png got
+cmp -s got relit/relit.png || complain "relight of maps that were sent is another than merlin relight's"
+radiance room.hdr 32 6 64
+relit=$(submit relight -F photo=@"$demo" -F environment=@room.hdr -F rotate=90 -F side=64)
+told "$relit" | grep -q '"state":"done"' || complain "a room: $(told "$relit")"
+asks 400 'relight wants a light' "$site/v1/relight" -F job="$maps"
+asks 400 'one of photo, maps' "$site/v1/relight" -F light=0,0,0
+asks 400 'light wants 3 numbers' "$site/v1/relight" -F job="$maps" -F light=1,2
+asks 404 'not there, or not done' "$site/v1/relight" -F job=00000000000000000000000000000000 -F light=0,0,0
+asks 404 'not there, or not done' "$site/v1/relight" -F job=../../etc -F light=0,0,0
+asks 404 'not there, or not done' "$site/v1/relight" -F job="$relit" -F light=0,0,0
+unmapped=$(submit relight -F maps=@"$demo" -F light=0,0,0)
+told "$unmapped" | grep -q '"state":"failed".*maps.exr' || complain "a picture in the place of maps: $(told "$unmapped")"
+
+echo "a surface over HTTP is merlin stereo's"
+"$MERLIN" relight own --dome 12 --lp -o dome -q
+"$MERLIN" stereo dome -o surface -q || complain "no surface"
+pictures=()
+for picture in dome/dome_*; do pictures+=(-F pictures=@"$picture"); done
+solid=$(submit stereo "${pictures[@]}" -F lights=@dome/dome.lp -F mask=@dome/mask.webp)
+told "$solid" | grep -q '"state":"done".*"method":"robust"' || complain "stereo: $(told "$solid")"
+fetches "$solid" mesh.glb got
+cmp -s got surface/mesh.glb || complain "the mesh is another than merlin stereo's"
+asks 400 'stereo wants 3 pictures or more, not 2' "$site/v1/stereo" "${pictures[@]:0:4}"
+asks 400 'filenames.txt, sent as pictures, has no name of a picture' "$site/v1/stereo" "${pictures[@]}" -F "pictures=@dome/dome.lp;filename=filenames.txt"
+cp "$demo" secret.png
+sed "s|^[^ ]*\.[a-z]* |$PWD/secret.png |" dome/dome.lp >elsewhere.lp
+elsewhere=$(submit stereo "${pictures[@]}" -F lights=@elsewhere.lp)
+told "$elsewhere" | grep -q '"state":"failed"' || complain "a list that names other files is followed: $(told "$elsewhere" | head -c 500)"
 
 echo "what was sent is checked at once"
 asks 400 'no file \\"photo\\" was sent' "$site/v1/estimate" -F size=512

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A job as it is seen: a picture, how far it is, and what came of it.
+// What one upload becomes: a picture, how far its job is, and what came of it.
 import { follow, remove, submit } from "./api.js";
+import { lamps } from "./lamps.js";
+import { correct } from "./mask.js";
 import { bytes, make, say } from "./parts.js";
 
 const stages = {
@@ -10,7 +12,8 @@ const stages = {
 const first = ["viewer.html", "overview.png", "maps.exr", "mesh.glb"];
 
 function files_of(job) {
-    const sorted = [...job.files].sort((a, b) => (first.indexOf(a.name) + 9) % 9 - (first.indexOf(b.name) + 9) % 9);
+    const order = (name) => (first.indexOf(name) + first.length + 1) % (first.length + 1);
+    const sorted = [...job.files].sort((a, b) => (first.includes(b.name) - first.includes(a.name)) || order(a.name) - order(b.name));
     return sorted.map((file) => make("li", {}, make("a", { href: file.url, download: file.name }, file.name), " ",
         make("span", { class: "dim" }, bytes(file.bytes))));
 }
@@ -20,38 +23,61 @@ function words_of(now) {
     return stages[now.stage] || "Working";
 }
 
+function summary_of(job) {
+    const seconds = job.ended - job.created, by = job.report?.model || job.report?.method;
+    return `${by ? `Done by ${by}` : "Done"}, ${seconds ? `${seconds} s` : "less than a second"}`;
+}
+
 export class Card {
-    // title: what is shown of it; picture: a URL, or null.
-    constructor(list, title, picture) {
-        this.title = title;
+    // files: what is sent, [name, file] pairs; one photograph can have its mask corrected.
+    constructor(list, title, kind, files) {
+        Object.assign(this, { title, kind, files, photo: kind === "estimate" ? files[0][1] : null, painted: null, turn: 0 });
+        const picture = files.find(([, file]) => file.type.startsWith("image/"));
+        this.address = picture ? URL.createObjectURL(picture[1]) : null;
         this.bar = make("progress", { max: 1, value: 0, "aria-label": `Progress of ${title}` });
-        this.words = make("p", { class: "dim" }, "Sending");
+        this.words = make("p", { class: "dim" });
         this.body = make("div", { class: "body" });
-        this.button = make("button", { type: "button", "aria-label": `Cancel ${title}`, onclick: () => this.leave() }, "Cancel");
-        this.root = make("li", { class: "card" },
-            make("div", { class: "head" }, picture ? make("img", { src: picture, alt: "", onerror: (e) => e.target.remove() }) : null,
-                make("div", { class: "what" }, make("h3", {}, title), this.words, this.bar), this.button), this.body);
-        this.gone = false;
+        this.mask = this.photo && make("button", { type: "button", "aria-label": `Correct the mask of ${title}`, onclick: () => this.repaint() }, "Mask…");
+        this.button = make("button", { type: "button", onclick: () => this.leave() });
+        this.root = make("li", { class: "card", "aria-label": title },
+            make("div", { class: "head" },
+                this.address && make("img", { src: this.address, alt: "", onerror: (e) => e.target.remove() }),
+                make("div", { class: "what" }, make("h3", {}, title), this.words, this.bar),
+                make("div", { class: "buttons" }, this.mask, this.button)), this.body);
         list.prepend(this.root);
+        this.run();
     }
 
-    // Sends fields and follows the job; gives it back when it is done, else null.
-    async run(kind, fields) {
+    name_button(words) {
+        this.button.textContent = words;
+        this.button.setAttribute("aria-label", `${words} ${this.title}`);
+    }
+
+    // Sends the files and follows their job, unless another turn of this card begins before.
+    async run() {
+        const turn = ++this.turn, fields = this.painted ? [...this.files, ["mask", this.painted]] : this.files;
+        const gone = () => turn !== this.turn;
+        this.bar.hidden = false;
+        this.bar.value = 0;
+        this.words.className = "dim";
+        this.words.textContent = "Sending";
+        this.body.replaceChildren();
+        this.name_button("Cancel");
         try {
-            this.job = await submit(kind, fields, (share) => { this.bar.value = 0.1 * share; });
-            if (this.gone) return remove(this.job).then(() => null, () => null);
-            const now = await follow(this.job, (told) => {
+            const job = await submit(this.kind, fields, (share) => { if (!gone()) this.bar.value = 0.1 * share; });
+            if (gone()) return void remove(job).catch(() => {});
+            this.job = job;
+            const now = await follow(job, (told) => {
+                if (gone()) return;
                 this.words.textContent = words_of(told);
                 this.bar.value = 0.1 + 0.9 * told.progress;
             });
-            if (this.gone || now.state === "cancelled") return null;
+            if (gone() || now.state === "cancelled") return;
             if (now.state === "failed") throw new Error(now.error);
             this.job = now;
             this.done();
-            return now;
         } catch (error) {
-            if (!this.gone) this.fail(error.message);
-            return null;
+            if (!gone()) this.fail(error.message);
         }
     }
 
@@ -59,29 +85,41 @@ export class Card {
         this.words.textContent = words;
         this.words.className = "wrong";
         this.bar.hidden = true;
-        this.button.textContent = "Remove";
-        this.button.setAttribute("aria-label", `Remove ${this.title}`);
+        this.name_button("Remove");
         say(`${this.title}: ${words}`);
     }
 
     done() {
         const job = this.job, view = job.files.find((file) => file.name === "viewer.html");
         this.bar.hidden = true;
-        this.button.textContent = "Remove";
-        this.button.setAttribute("aria-label", `Remove ${this.title} from the server`);
-        this.words.textContent = (job.report?.model ? `By ${job.report.model}` : "Done") + `, ${(job.ended - job.created) || "under 1"} s`;
+        this.name_button("Remove");
+        this.words.textContent = summary_of(job);
         for (const warning of job.report?.warnings || []) this.body.append(make("p", { class: "warning" }, warning.message));
         if (view)
-            this.body.append(make("iframe", { src: view.url, title: `Viewer of ${this.title}`, loading: "lazy", allowfullscreen: true }),
-                make("p", {}, make("a", { href: view.url, target: "_blank", rel: "noopener" }, "Open the viewer by itself")));
+            this.body.append(make("iframe", { src: view.url, title: `Viewer of ${this.title}`, allow: "fullscreen" }),
+                make("p", {}, make("a", { href: view.url, target: "_blank", rel: "noopener" }, "Open the viewer in a tab of its own")));
         this.body.append(make("details", {}, make("summary", {}, `Files (${job.files.length})`), make("ul", { class: "files" }, ...files_of(job))));
+        if (job.files.some((file) => file.name === "maps.exr")) this.body.append(lamps(job, this.title));
         say(`${this.title} is done`);
     }
 
-    leave() {
-        this.gone = true;
+    async repaint() {
+        const painted = await correct(this.photo, this.painted);
+        if (!painted) return this.mask.focus();
+        this.painted = painted;
         if (this.job) remove(this.job).catch(() => {});
+        this.job = null;
+        this.run();
+        this.mask.focus();
+    }
+
+    leave() {
+        this.turn++;
+        if (this.job) remove(this.job).catch(() => {});
+        if (this.address) URL.revokeObjectURL(this.address);
+        const next = this.root.nextElementSibling?.querySelector("button:last-of-type") || document.getElementById("files");
         this.root.remove();
-        say(`${this.title} was removed`);
+        next.focus();
+        say(`${this.title} is removed`);
     }
 }

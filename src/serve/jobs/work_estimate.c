@@ -42,7 +42,9 @@ static status run(const work_context *w, const void *request)
     if (s != OK) return s;
     name_of(w->form, name);
     w->progress(w->progress_context, "writing", 0);
-    s = merlin_maps_write(w->model, &maps, NULL, store_path(w->store, w->form->id, STORE_OUT, NULL, folder));
+    const merlin_write_params write = {
+        .in_place = 1, .stop = w->stop, .progress = w->progress, .progress_context = w->progress_context};
+    s = merlin_maps_write(w->model, &maps, &write, store_path(w->store, w->form->id, STORE_OUT, NULL, folder));
     if (s == OK && w->stop()) s = fail(MERLIN_STOPPED, "stopped");
     const merlin_view_params view = {.name = name};
     if (s == OK && r->view)

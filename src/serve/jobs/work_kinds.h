@@ -5,6 +5,6 @@
 
 #include "serve/jobs/work.h"
 
-extern const work_kind work_mask, work_estimate;
+extern const work_kind work_mask, work_estimate, work_relight, work_stereo;
 
 #endif

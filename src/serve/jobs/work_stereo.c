@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: MIT */
+/* Pictures of an object under many lights to its surface. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/json/json_put.h"
+#include "serve/jobs/work_kinds.h"
+
+/* Names are checked as they are read: a list of another data set's layout, sent as a picture, would lead elsewhere. */
+static const char *const picture_endings[] = {".png",  ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".heic", ".heif",
+                                              ".avif", ".exr", ".hdr",  ".bmp", ".pgm",  ".ppm",  ".pfm",  ".cr2",
+                                              ".cr3",  ".nef", ".arw",  ".dng", ".raf",  ".rw2",  ".orf",  NULL};
+
+typedef struct stereo_request {
+    merlin_stereo_params params;
+    int near_lights, unknown_lights, linear;
+    float field_of_view, distance;
+} stereo_request;
+
+/* ---- what is asked for ---- */
+
+static status check_pictures(const form *f, const work_limits *limits)
+{
+    enum { LEAST = 3 };
+    int count = 0;
+    for (size_t i = 0; i < f->file_count; i++) {
+        const form_file *file = &f->files[i];
+        if (strcmp(file->key, "lights") == 0) continue;
+        count += strcmp(file->key, "pictures") == 0;
+        if (!file_ends_in_any(file->name, picture_endings))
+            return fail(MERLIN_WRONG_USE, "%s, sent as %s, has no name of a picture", file->name, file->key);
+    }
+    if (count < LEAST) return fail(MERLIN_WRONG_USE, "stereo wants %d pictures or more, not %d", LEAST, count);
+    if (count > limits->pictures)
+        return fail(MERLIN_WRONG_USE, "stereo takes %d pictures at most here, not %d", limits->pictures, count);
+    return OK;
+}
+
+static status read_values(const form *f, stereo_request *r)
+{
+    static const char *const methods[] = {"auto", "ls", "robust", "near", "semi", "uncalibrated"};
+    int method = MERLIN_STEREO_AUTO;
+    status s = form_choice(f, "method", methods, sizeof methods / sizeof *methods, &method);
+    r->params.method = (merlin_stereo_method)method;
+    if (s == OK) s = form_flag(f, "keep_edges", &r->params.keep_edges);
+    if (s == OK) s = form_flag(f, "near", &r->near_lights);
+    if (s == OK) s = form_flag(f, "unknown", &r->unknown_lights);
+    if (s == OK) s = form_flag(f, "linear", &r->linear);
+    if (s == OK && form_value(f, "fov")) s = form_real(f, "fov", 1, 150, &r->field_of_view);
+    if (s == OK && form_value(f, "distance")) s = form_real(f, "distance", 1e-6, 1e6, &r->distance);
+    return s;
+}
+
+static status check(const form *f, const work_limits *limits, void **request)
+{
+    const form_key known[] = {{"pictures", FORM_FILE, SIZE_MAX},
+                              {"lights", FORM_FILE, 1},
+                              {"mask", FORM_FILE, 1},
+                              {"ambient", FORM_FILE, 1},
+                              {"method", FORM_VALUE, 1},
+                              {"keep_edges", FORM_VALUE, 1},
+                              {"near", FORM_VALUE, 1},
+                              {"unknown", FORM_VALUE, 1},
+                              {"linear", FORM_VALUE, 1},
+                              {"fov", FORM_VALUE, 1},
+                              {"distance", FORM_VALUE, 1},
+                              {0}};
+    stereo_request *r = calloc(1, sizeof *r);
+    *request = r;
+    if (!r) return fail(MERLIN_NO_MEMORY, "no memory for a request");
+    status s = form_check(f, "stereo", known);
+    if (s == OK) s = check_pictures(f, limits);
+    return s == OK ? read_values(f, r) : s;
+}
+
+/* ---- the work ---- */
+
+/* The path of a file that was sent, or NULL. */
+static const char *path_of(const work_context *w, const char *key, char path[PATH_MAX])
+{
+    const form_file *file = form_find_file(w->form, key);
+    return file ? store_path(w->store, w->form->id, STORE_IN, file->name, path) : NULL;
+}
+
+static status read_capture(const work_context *w, const stereo_request *r, merlin_capture **out)
+{
+    char lights[PATH_MAX], mask[PATH_MAX], ambient[PATH_MAX], folder[PATH_MAX];
+    const merlin_capture_files files = {.lights = path_of(w, "lights", lights),
+                                        .mask = path_of(w, "mask", mask),
+                                        .ambient = path_of(w, "ambient", ambient),
+                                        .near_lights = r->near_lights,
+                                        .unknown_lights = r->unknown_lights || !form_find_file(w->form, "lights"),
+                                        .linear = r->linear,
+                                        .field_of_view = r->field_of_view,
+                                        .distance = r->distance,
+                                        .stop = w->stop,
+                                        .progress = w->progress,
+                                        .progress_context = w->progress_context};
+    return merlin_capture_read(store_path(w->store, w->form->id, STORE_IN, NULL, folder), &files, out);
+}
+
+static void put_warnings(const work_context *w, const merlin_warnings *warnings)
+{
+    cJSON *list = json_put_array(w->report, "warnings");
+    for (size_t i = 0; i < warnings->count; i++) {
+        cJSON *one = json_append_object(list);
+        json_put_text(one, "code", warnings->at[i].code);
+        json_put_text(one, "message", warnings->at[i].message);
+    }
+}
+
+static void put_report(const work_context *w, const merlin_surface *surface)
+{
+    static const char *const methods[] = {"auto", "ls", "robust", "near", "semi", "uncalibrated"};
+    put_warnings(w, &surface->warnings);
+    json_put_text(w->report, "method", methods[surface->method]);
+    json_put_number(w->report, "width", surface->normal.width);
+    json_put_number(w->report, "height", surface->normal.height);
+}
+
+static status write_surface(const work_context *w, const merlin_surface *surface)
+{
+    char path[PATH_MAX];
+    w->progress(w->progress_context, "writing", 0);
+    status s = merlin_mesh_write(store_path(w->store, w->form->id, STORE_OUT, "mesh.glb", path), surface);
+    if (s == OK) s = merlin_mesh_write(store_path(w->store, w->form->id, STORE_OUT, "mesh.ply", path), surface);
+    return s;
+}
+
+static status run(const work_context *w, const void *request)
+{
+    const stereo_request *r = request;
+    merlin_capture *capture = NULL;
+    merlin_surface surface = {.light_count = 0};
+    merlin_stereo_params params = r->params;
+    params.stop = w->stop;
+    params.progress = w->progress;
+    params.progress_context = w->progress_context;
+    status s = read_capture(w, r, &capture);
+    if (s == OK) s = merlin_stereo(capture, &params, &surface);
+    merlin_capture_free(capture);
+    if (s != OK) return s;
+    put_report(w, &surface);
+    s = write_surface(w, &surface);
+    merlin_surface_free(&surface);
+    return s;
+}
+
+static const work_stage stages[] = {
+    {"reading", 0.2f}, {"solving", 0.6f}, {"integrating", 0.1f}, {"writing", 0.1f}, {0}};
+const work_kind work_stereo = {.name = "stereo", .stages = stages, .check = check, .run = run};
