@@ -41,8 +41,8 @@ mask=$(submit mask -F photo=@"$demo" -F side=128)
 told "$mask" | grep -q '"width":512,"height":512,"mask_source":"' || complain "$(told "$mask")"
 fetches "$mask" mask.png mask.png
 fetches "$mask" photo.png photo.png
-painted=$(submit estimate -F photo=@"$demo" -F mask=@mask.png -F size=256 -F view=0)
-told "$painted" | grep -q '"state":"done"' || complain "a small mask: $(told "$painted")"
+painted=$(submit estimate -F photo=@"$demo" -F mask=@mask.png -F size=256 -F view=0 -F mesh=1)
+told "$painted" | grep -q '"state":"done".*"mesh.glb"' || complain "a small mask: $(told "$painted")"
 told "$painted" | grep -q viewer.html && complain "view=0 makes a viewer"
 
 echo "pictures in other light are merlin relight's, of maps here, sent and made"

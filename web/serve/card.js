@@ -29,9 +29,9 @@ function summary_of(job) {
 }
 
 export class Card {
-    // files: what is sent, [name, file] pairs; one photograph can have its mask corrected.
-    constructor(list, title, kind, files) {
-        Object.assign(this, { title, kind, files, photo: kind === "estimate" ? files[0][1] : null, painted: null, turn: 0 });
+    // files, fields: what is sent, pairs of a name and a file or value; one photograph can have its mask corrected.
+    constructor(list, title, kind, files, fields) {
+        Object.assign(this, { title, kind, files, fields, photo: kind === "estimate" ? files[0][1] : null, painted: null, turn: 0 });
         const picture = files.find(([, file]) => file.type.startsWith("image/"));
         this.address = picture ? URL.createObjectURL(picture[1]) : null;
         this.bar = make("progress", { max: 1, value: 0, "aria-label": `Progress of ${title}` });
@@ -55,7 +55,7 @@ export class Card {
 
     // Sends the files and follows their job, unless another turn of this card begins before.
     async run() {
-        const turn = ++this.turn, fields = this.painted ? [...this.files, ["mask", this.painted]] : this.files;
+        const turn = ++this.turn, fields = [...this.fields, ...this.files, ...(this.painted ? [["mask", this.painted]] : [])];
         const gone = () => turn !== this.turn;
         this.bar.hidden = false;
         this.bar.value = 0;

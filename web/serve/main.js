@@ -29,7 +29,7 @@ function add(title, kind, files) {
     if (size > limits.bytes) return complain(`${title} has ${bytes(size)}: this server takes ${bytes(limits.bytes)} at most.`);
     if (files.length > limits.files) return complain(`${title} has ${files.length} files: this server takes ${limits.files} at most.`);
     byId("none").hidden = true;
-    new Card(byId("jobs"), title, kind, files);
+    new Card(byId("jobs"), title, kind, files, kind === "estimate" ? [["mesh", "1"]] : []);
 }
 
 function take(files) {

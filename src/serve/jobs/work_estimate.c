@@ -4,17 +4,18 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "serve/jobs/mesh_files.h"
 #include "serve/jobs/photo_form.h"
 #include "serve/jobs/work_kinds.h"
 
 typedef struct estimate_request {
     merlin_params params;
-    int view;
+    int view, mesh;
 } estimate_request;
 
 static status check(const form *f, const work_limits *limits, void **request)
 {
-    static const form_key known[] = {PHOTO_KEYS, {"view", FORM_VALUE, 1}, {0}};
+    static const form_key known[] = {PHOTO_KEYS, {"view", FORM_VALUE, 1}, {"mesh", FORM_VALUE, 1}, {0}};
     estimate_request *r = calloc(1, sizeof *r);
     (void)limits;
     *request = r;
@@ -22,6 +23,7 @@ static status check(const form *f, const work_limits *limits, void **request)
     r->view = 1;
     status s = form_check(f, "estimate", known);
     if (s == OK) s = photo_form_params(f, &r->params);
+    if (s == OK) s = form_flag(f, "mesh", &r->mesh);
     return s == OK ? form_flag(f, "view", &r->view) : s;
 }
 
@@ -31,6 +33,15 @@ static void name_of(const form *f, char name[SAFE_NAME])
     memcpy(name, form_find_file(f, "photo")->name, SAFE_NAME);
     char *ending = strrchr(name, '.');
     if (ending && ending != name) *ending = 0;
+}
+
+static status write_mesh(const work_context *w, const merlin_maps *maps)
+{
+    merlin_mesh mesh = {.vertex_count = 0};
+    status s = merlin_mesh_from_maps(maps, NULL, &mesh);
+    if (s == OK) s = mesh_files_write(w, &mesh);
+    merlin_mesh_free(&mesh);
+    return s;
 }
 
 static status run(const work_context *w, const void *request)
@@ -49,6 +60,7 @@ static status run(const work_context *w, const void *request)
     const merlin_view_params view = {.name = name};
     if (s == OK && r->view)
         s = merlin_view_write(&maps, &view, store_path(w->store, w->form->id, STORE_OUT, "viewer.html", page));
+    if (s == OK && r->mesh) s = write_mesh(w, &maps);
     merlin_maps_free(&maps);
     return s;
 }

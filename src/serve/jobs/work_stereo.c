@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "base/json/json_put.h"
+#include "serve/jobs/mesh_files.h"
 #include "serve/jobs/work_kinds.h"
 
 /* Names are checked as they are read: a list of another data set's layout, sent as a picture, would lead elsewhere. */
@@ -121,10 +122,11 @@ static void put_report(const work_context *w, const merlin_surface *surface)
 
 static status write_surface(const work_context *w, const merlin_surface *surface)
 {
-    char path[PATH_MAX];
+    merlin_mesh mesh = {.vertex_count = 0};
     w->progress(w->progress_context, "writing", 0);
-    status s = merlin_mesh_write(store_path(w->store, w->form->id, STORE_OUT, "mesh.glb", path), surface);
-    if (s == OK) s = merlin_mesh_write(store_path(w->store, w->form->id, STORE_OUT, "mesh.ply", path), surface);
+    status s = merlin_mesh_from_surface(surface, &mesh);
+    if (s == OK) s = mesh_files_write(w, &mesh);
+    merlin_mesh_free(&mesh);
     return s;
 }
 
