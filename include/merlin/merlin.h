@@ -13,12 +13,24 @@
  *         merlin_maps_write(model, &maps, NULL, "cup.merlin") || merlin_image_write("cup-from-left.png", &relit))
  *         fprintf(stderr, "%s\n", merlin_error());
  *
- * Each header is a subject: status.h (errors, progress, threads), image.h (pixels), pictures.h (sheets and
- * animations), camera.h (lenses), warnings.h (what should be known of a result), files.h (what was written or left
- * aside), weights.h (what is in a weights file), model.h (weights to work with), maps.h (what an object is made of),
- * estimate.h (from a photograph to maps), relight.h (from maps to new light), stereo.h (from pictures under many
- * lights to a surface), calibrate.h (where lights were), mesh.h (maps and surfaces as triangles), view.h (maps as a
- * page). This one includes them all, and says what holds for all.
+ * Each header is a subject; this one includes them all, and says what holds for all.
+ *
+ *     status.h       errors, progress, threads
+ *     image.h        pixels
+ *     pictures.h     sheets and animations
+ *     camera.h       lenses
+ *     warnings.h     what should be known of a result
+ *     files.h        what was written or left aside
+ *     weights.h      what is in a weights file
+ *     model.h        weights to work with
+ *     maps.h         what an object is made of
+ *     estimate.h     from a photograph to maps
+ *     relight.h      from maps to new light
+ *     stereo.h       from pictures under many lights to a surface
+ *     calibrate.h    where lights were
+ *     mesh.h         maps and surfaces as triangles
+ *     view.h         maps as a page
+ *     export.h       maps for other programs
  *
  * Images are float, interleaved, rows from the top, on linear sRGB primaries. Space: the camera is at the origin and
  * looks along -z, x right, y up; the object stands near (0, 0, -1).
@@ -36,6 +48,7 @@
 #include <merlin/calibrate.h>
 #include <merlin/camera.h>
 #include <merlin/estimate.h>
+#include <merlin/export.h>
 #include <merlin/files.h>
 #include <merlin/image.h>
 #include <merlin/maps.h>

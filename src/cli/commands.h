@@ -5,6 +5,7 @@
 
 int cmd_estimate(int argc, char **argv);
 int cmd_relight(int argc, char **argv);
+int cmd_export(int argc, char **argv);
 int cmd_view(int argc, char **argv);
 int cmd_stereo(int argc, char **argv);
 int cmd_serve(int argc, char **argv);

@@ -10,7 +10,7 @@ ln -s "$(realpath "$MERLIN")" "$scratch/bin/merlin"
 PATH=$scratch/bin:$PATH
 cd "$scratch" || exit 1
 # PROGRAM COMMAND
-commands=("merlin estimate" "merlin relight" "merlin view" "merlin stereo" "merlin stereo calibrate" "merlin serve" "merlin info")
+commands=("merlin estimate" "merlin relight" "merlin view" "merlin export" "merlin stereo" "merlin stereo calibrate" "merlin serve" "merlin info")
 [[ -z ${MERLIN_LAB:-} ]] || for command in render train eval "eval stereo" "eval solvers" "eval detail" "eval doubts" \
     "eval masks" "eval lights" "eval pictures" "eval photos" export bench; do commands+=("merlin-lab $command"); done
 

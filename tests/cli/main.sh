@@ -14,7 +14,7 @@ refuses 2 'no option "--verson": did you mean --version?' "$MERLIN" --verson
 refuses 2 'no command "quux" (try' "$MERLIN" quux
 refuses 2 "for a photograph, merlin estimate $scratch/cup.jpg" "$MERLIN" "$(touch "$scratch/cup.jpg" && echo "$scratch/cup.jpg")"
 refuses 2 'no command "photo?.png"' "$MERLIN" $'photo\n.png'
-for command in estimate relight view stereo serve info; do
+for command in estimate relight view export stereo serve info; do
     succeeds "$command" "$MERLIN" --help
     succeeds "[Uu]sage: merlin $command" "$MERLIN" "$command" --help
     succeeds "[Uu]sage: merlin $command" "$MERLIN" help "$command"
@@ -38,7 +38,7 @@ refuses 2 "unknown option --exposre=1: did you mean --exposure? (try" "$MERLIN" 
 refuses 2 "unknown option --ligth: did you mean --light?" "$MERLIN" relight photo.png --ligth 0,0,0
 refuses 2 'no command "estimat"' "$MERLIN" help estimat
 succeeds "usage: merlin stereo calibrate " "$MERLIN" help stereo calibrate
-for command in render train eval export bench; do
+for command in render train eval bench; do
     refuses 2 "merlin: $command is a command of another program: merlin-lab $command (try merlin --help)" "$MERLIN" $command --help
 done
 succeeds "usage: merlin estimate" "$MERLIN" help estimate photo.png

@@ -4,8 +4,8 @@
 #include <stdbool.h>
 
 #include "estimate/light/relight_env.h"
-#include "optics/camera.h"
 #include "optics/octahedron.h"
+#include "spheres.h"
 #include "surroundings.h"
 
 /* last, as cmocka defines a macro named fail */
@@ -16,36 +16,7 @@
 
 #include <cmocka.h>
 
-enum { SIDE = 256, PIXELS = SIDE * SIDE };
-static const camera view = {.width = SIDE, .height = SIDE, .fov = CAMERA_FOV};
-
-static vec3 ray_of(int i)
-{
-    return camera_point(&view, (float)(i % SIDE) + 0.5f, (float)(i / SIDE) + 0.5f, 1);
-}
-
-static void put(surface *s, int i, float depth, vec3 normal)
-{
-    s->depth.data[i] = depth;
-    s->mask.data[i] = 1;
-    s->roughness.data[i] = 0.5f;
-    vec3_put(normal, s->normal.data + 3 * i);
-}
-
-/* The front (nearest) or the inside (farthest) of a sphere; of the inside, what is deeper than a share of the radius
- * behind the middle. */
-static void put_sphere(surface *s, vec3 centre, float radius, bool inside, float deeper)
-{
-    for (int i = 0; i < PIXELS; i++) {
-        vec3 d = vec3_normalize(ray_of(i));
-        float along = vec3_dot(d, centre), square = along * along - vec3_dot(centre, centre) + radius * radius;
-        if (square <= 0) continue;
-        vec3 p = vec3_scale(d, inside ? along + sqrtf(square) : along - sqrtf(square));
-        vec3 out = vec3_scale(vec3_sub(p, centre), 1 / radius);
-        if (inside && -out.z < deeper) continue;
-        put(s, i, -p.z, inside ? vec3_scale(out, -1) : out);
-    }
-}
+enum { SIDE = SPHERES_SIDE, PIXELS = SPHERES_PIXELS };
 
 static void horizon_of(const surface *s, horizon *out)
 {
@@ -75,13 +46,13 @@ static void a_ball_alone_sees_all_of_the_sky_that_it_faces(void **state)
     surface s;
     horizon h;
     assert_int_equal(surface_new(SIDE, SIDE, &s), OK);
-    put_sphere(&s, vec3_make(0, 0, -1), 0.35f, false, 0);
+    spheres_put(&s, vec3_make(0, 0, -1), 0.35f, false, 0);
     horizon_of(&s, &h);
     for (int i = 0; i < PIXELS; i += 7) {
         if (s.mask.data[i] < 0.5f) continue;
         vec3 n = vec3_of(s.normal.data + 3 * i);
         /* in the outermost pixels the ball falls off by several from one to the next */
-        if (vec3_dot(n, vec3_normalize(ray_of(i))) > -0.3f) continue;
+        if (vec3_dot(n, vec3_normalize(spheres_ray(i))) > -0.3f) continue;
         for (int k = 0; k < 64; k++) {
             vec3 d = octahedron_direction(((float)(k % 8) + 0.5f) / 8, ((float)(k / 8) + 0.5f) / 8);
             if (vec3_dot(n, d) > 0.2f) assert_true(sees(&h, i, d) > 0.99f);
@@ -104,7 +75,7 @@ static void every_point_of_a_bowl_gets_the_same_share_of_an_even_sky(void **stat
         horizon h;
         img share;
         assert_int_equal(surface_new(SIDE, SIDE, &s), OK);
-        put_sphere(&s, vec3_make(0, 0, -1.1f), 0.4f, true, deeper);
+        spheres_put(&s, vec3_make(0, 0, -1.1f), 0.4f, true, deeper);
         for (int i = 0; i < 3 * PIXELS; i++)
             s.albedo.data[i] = s.mask.data[i / 3] * albedo[a];
         horizon_of(&s, &h);
@@ -139,8 +110,8 @@ static void light_passes_behind_what_stands_free(void **state)
     horizon h;
     assert_int_equal(surface_new(SIDE, SIDE, &s), OK);
     for (int i = 0; i < PIXELS; i++)
-        put(&s, i, -point.z, vec3_make(0, 0, 1));
-    put_sphere(&s, ball, 0.06f, false, 0);
+        spheres_put_pixel(&s, i, -point.z, vec3_make(0, 0, 1));
+    spheres_put(&s, ball, 0.06f, false, 0);
     horizon_of(&s, &h);
     const int middle = SIDE / 2 * SIDE + SIDE / 2;
     const vec3 before = {0.03f, 0, 0.7f}, behind = {0.32f, 0, 0.15f};

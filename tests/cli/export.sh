@@ -1,0 +1,61 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# merlin export from outside: which files it writes, that they are what their readers expect, and how it refuses.
+# shellcheck source=tests/cli/support/check.bash
+source "$(dirname "$0")/support/check.bash"
+# shellcheck source=tests/cli/support/pictures.bash
+source "$(dirname "$0")/support/pictures.bash"
+export OMP_WAIT_POLICY=passive # other tests may run beside this one
+examples=${MERLIN_SOURCE_DIR:?}/examples
+cd "$scratch" || exit 1
+export_maps() { "$MERLIN" export "$@"; }
+files_of() { (cd "$1" && echo *); }
+
+succeeds cup.merlin "$MERLIN" estimate "$examples/demo.png" --size 256 -o cup.merlin
+
+echo "the usual maps"
+succeeds '^cup.merlin: cup.merlin/export, 512 x 512, relief 0[.].* 7 files, ' export_maps cup.merlin
+[ "$(files_of cup.merlin/export)" = "albedo.png alpha.png ao.png export.json height.png normal.png roughness.png" ] ||
+    complain "other files: $(files_of cup.merlin/export)"
+cmp -s cup.merlin/export/albedo.png cup.merlin/albedo.png && complain "beside the object there is no colour"
+succeeds '"side":512' export_maps cup.merlin/maps.exr --json -q
+lists_its_files cup.merlin/export albedo.png alpha.png ao.png export.json height.png normal.png roughness.png
+
+echo "those that are asked for, by the way that is asked for"
+succeeds . export_maps cup.merlin --maps normal,orm --normal-y down --size 256 -o unreal
+[ "$(files_of unreal)" = "export.json normal.png orm.png" ] || complain "other files: $(files_of unreal)"
+grep -q '"normal_y":[[:space:]]*"down"' unreal/export.json && grep -q '"side":[[:space:]]*256' unreal/export.json ||
+    complain "export.json says otherwise: $(cat unreal/export.json)"
+succeeds . export_maps cup.merlin --maps all --size 128 -o all
+[ "$(files_of all)" = "albedo.png alpha.png ao.png export.json height.exr height.png material.mtlx normal.png orm.png roughness.png smoothness.png" ] ||
+    complain "other files: $(files_of all)"
+if command -v xmllint >/dev/null; then
+    xmllint --noout all/material.mtlx || complain "material.mtlx is no XML"
+fi
+for file in albedo normal roughness; do
+    grep -q "value=\"$file.png\"" all/material.mtlx || complain "material.mtlx does not name $file.png"
+done
+export_maps cup.merlin -q -o quiet >said && [ ! -s said ] || complain "-q says something"
+
+echo "a captured surface"
+succeeds dome "$MERLIN" relight cup.merlin --dome 8 --lp --matte -o dome
+succeeds surface "$MERLIN" stereo dome -o surface
+succeeds '^surface: surface/export, 128 x 128, ' export_maps surface --size 128
+
+echo "bad input gets one line, and nothing is half-written"
+refuses 2 'no folder of maps given' export_maps
+refuses 2 'one folder at a time' export_maps cup.merlin cup.merlin
+refuses 2 'knows no "gloss", but albedo' export_maps cup.merlin --maps albedo,gloss
+refuses 2 'knows no ""' export_maps cup.merlin --maps albedo,
+refuses 2 'is up or down, not "left"' export_maps cup.merlin --normal-y left
+refuses 2 'green is down' export_maps cup.merlin --maps materialx --normal-y down -o none
+refuses 2 '--size' export_maps cup.merlin --size 63
+refuses 1 'there is no folder nowhere' export_maps nowhere
+refuses 1 'is no folder of maps: merlin estimate' export_maps "$examples/demo.png"
+refuses 1 'choose another folder' export_maps cup.merlin -o cup.merlin
+mkdir empty
+refuses 1 'no maps.exr in empty' export_maps empty
+: >taken
+refuses 1 'taken' export_maps cup.merlin -o taken
+[ ! -e none ] && [ "$(ls -A empty)" = "" ] || complain "left behind: $(ls -A none empty)"
+finish
