@@ -128,6 +128,6 @@ for head in program*.h; do
     cc program$number.c $(pkg-config --cflags --libs merlin) -o program$number 2>stderr || complain "program $number: $(cat stderr)"
     ./program$number >stdout 2>&1 || complain "program $number: $(cat stdout)"
 done
-present relit.png owl.glb cup.html
+present relit.png cup.glb cup.html
 
 finish
