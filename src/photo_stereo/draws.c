@@ -12,7 +12,7 @@ int draw_count(const merlin_capture *all)
     return all->count > DRAW_PICTURES ? DRAW_MOST : 1;
 }
 
-/* Borrows what it chooses: the first of a shuffled order. */
+/* Selects the first pictures of a shuffled order, borrowed. */
 static void choose(const merlin_capture *all, int draw, merlin_capture *some)
 {
     rng r = rng_at(SEED, (uint64_t)draw, STREAM_DRAW);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Captures made of pictures in memory: the camera of docs/conventions.md, point lights of the training data's power.
+/* Captures of pictures in memory: the camera of docs/conventions.md, point lights of the training data's power.
  *
  *     merlin_capture c;
  *     status s = near_capture_new(&mask, &depth, 60, &c);
@@ -11,13 +11,14 @@
 
 #include "stereo/capture/capture.h"
 
-/* Radiance that becomes full scale: a white surface facing a light at half the usual distance is not clipped. */
+/* Radiance that becomes full scale: a white surface that faces a light at half the usual distance is not clipped. */
 #define NEAR_CAPTURE_WHITE 8.0f
 
-/* mask: 1 channel, square, hardened here; depth: 1 channel, whose mean over the mask becomes the camera's
- * distance; field_of_view: horizontal, degrees. pst_capture_free also after a failure. */
+/* Makes a capture without pictures. mask: 1 channel, square, made 0 or 1 here; depth: 1 channel, whose mean over the
+ * mask becomes the camera's distance; field_of_view: horizontal, degrees. Call pst_capture_free after a failure, too.
+ */
 status near_capture_new(const img *mask, const img *depth, float field_of_view, merlin_capture *out);
-/* picture: 3 channels, radiance / NEAR_CAPTURE_WHITE, clipped to [0, 1]. */
+/* Adds a picture: 3 channels, radiance / NEAR_CAPTURE_WHITE, clipped to [0, 1]. */
 status near_capture_add(merlin_capture *c, const img *picture, vec3 light);
 
 #endif

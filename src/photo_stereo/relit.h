@@ -3,7 +3,7 @@
  *
  *     relit r;
  *     status s = relit_new(model, &maps, 256, NULL, &r);
- *     ... draws of r.capture, beside r.maps.normal ...
+ *     ... solve r.capture, and compare with r.maps.normal ...
  *     relit_free(&r);
  */
 #ifndef MERLIN_PHOTO_STEREO_RELIT_H
@@ -17,11 +17,11 @@ enum { RELIT_LIGHTS = 50 };
 
 typedef struct relit {
     merlin_capture capture; /* RELIT_LIGHTS pictures of the maps' crop; its camera.distance is the maps' mean depth */
-    surface maps;           /* what they were made from, of the same size */
+    surface maps;           /* maps from which they were rendered, of the same size */
 } relit;
 
-/* The maps' crop, side × side pixels, under lights of the frontal hemisphere that a fixed seed draws: rendered by the
- * BRDF, with the network's bounces. stop (may be NULL) is asked between pictures. */
+/* Renders the maps' crop in side × side pixels under lights of the frontal hemisphere, drawn with a fixed seed, by the
+ * BRDF with the network's bounces. stop (may be NULL) is called between pictures. */
 status relit_new(merlin_model *model, const merlin_maps *maps, int side, int (*stop)(void), relit *out);
 void relit_free(relit *r);
 

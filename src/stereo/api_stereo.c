@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What stands behind include/merlin/stereo.h. */
+/* Implements include/merlin/stereo.h. */
 #include "merlin/stereo.h"
 
 #include <math.h>
@@ -105,7 +105,7 @@ static bool are_finite(const float v[3])
     return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
 }
 
-/* Takes a light over with what all of the inside relies on: a direction of length 1, an intensity. */
+/* Copies a light with what the solvers rely on: a direction of length 1, an intensity. */
 static status take_light(merlin_lighting lighting, const merlin_light *from, merlin_light *to)
 {
     static const merlin_light nothing = {0};
@@ -150,7 +150,7 @@ void merlin_capture_free(merlin_capture *capture)
 
 /* ---- the surface ---- */
 
-/* Puts lights that are listed about the object where they are as the camera sees it, in a list of their own. */
+/* Converts lights that are listed relative to the object to the camera's space, in a list of their own. */
 static status place_lights(merlin_capture *c, const merlin_stereo_params *params, merlin_light **own)
 {
     const watch shown = {params->progress, params->progress_context, params->stop};
@@ -162,7 +162,7 @@ static status place_lights(merlin_capture *c, const merlin_stereo_params *params
     return pst_place_lights(c, &shown);
 }
 
-/* c: with a mask. */
+/* Solves the capture; c: with a mask. */
 static status solve(merlin_capture *c, const merlin_stereo_params *params, merlin_surface *out)
 {
     merlin_light *own = NULL;
@@ -185,7 +185,7 @@ merlin_status merlin_stereo(const merlin_capture *capture, const merlin_stereo_p
         s = fail(MERLIN_WRONG_USE, "no method of photometric stereo has the number %d", (int)params->method);
     if (s == OK && !capture->count) s = fail(MERLIN_WRONG_USE, "the capture has no pictures");
     if (s != OK) return s;
-    merlin_capture c = *capture; /* borrows all but a mask that is found */
+    merlin_capture c = *capture; /* borrows everything except for a mask that is found */
     bool search = !c.mask.data;
     if (search) s = pst_capture_find_mask(&c);
     if (s == OK) s = solve(&c, params, out);

@@ -297,7 +297,7 @@ static bool is_decided(const ball_outlines *outlines, merlin_ball ball, int chos
     return outlines->residual[chosen] < CLEARLY * outlines->residual[1 - chosen];
 }
 
-static void doubt(const ball_outlines *outlines, int chosen, merlin_calibration *c)
+static void check_choice(const ball_outlines *outlines, int chosen, merlin_calibration *c)
 {
     const merlin_circle *other = &outlines->at[1 - chosen % 2];
     if (outlines->nested && chosen < 2 && !is_decided(outlines, c->ball, chosen))
@@ -322,11 +322,11 @@ static void doubt(const ball_outlines *outlines, int chosen, merlin_calibration 
             behind, c->count);
 }
 
-static status doubt_fit(const merlin_capture *c, merlin_calibration *out)
+static status check_fit(const merlin_capture *c, merlin_calibration *out)
 {
     img outlines = {0};
     status s = outline_picture(&out->brightest, &outlines);
-    if (s == OK) s = ball_doubt(&c->mask, &outlines, out);
+    if (s == OK) s = ball_check(&c->mask, &outlines, out);
     if (s == OK) s = pst_doubt_copies(c, &out->warnings);
     img_free(&outlines);
     return s;
@@ -341,8 +341,8 @@ static status calibrate(const char *folder, const merlin_calibrate_params *optio
     status s = find_brightest(c, &out->brightest);
     if (s == OK) s = find_outlines(folder, options, c, out, &picture, &outlines);
     if (s == OK) s = choose_outline(c, &picture, &outlines, out, &chosen);
-    if (s == OK) doubt(&outlines, chosen, out);
-    if (s == OK) s = doubt_fit(c, out);
+    if (s == OK) check_choice(&outlines, chosen, out);
+    if (s == OK) s = check_fit(c, out);
     img_free(&picture);
     if (s != OK) return s;
     out->names = c->name;

@@ -14,7 +14,7 @@ static const float HARDLY = 0.2f, PLAINLY = 0.8f;
 /* The share of a radius from which on two circles are different ones. */
 static const float ELSEWHERE = 0.08f;
 
-static void doubt_shading(merlin_calibration *c)
+static void check_shading(merlin_calibration *c)
 {
     float sum = 0;
     for (int i = 0; i < c->count && c->residuals; i++)
@@ -54,7 +54,7 @@ static bool is_elsewhere(const merlin_circle *a, const merlin_circle *b)
 }
 
 /* Doubts the mask's circle where another is plainly seen and it is not. */
-static status doubt_place(const img *outlines, merlin_calibration *c)
+static status check_place(const img *outlines, merlin_calibration *c)
 {
     merlin_circle seen;
     bool found;
@@ -71,14 +71,14 @@ static status doubt_place(const img *outlines, merlin_calibration *c)
     return OK;
 }
 
-status ball_doubt(const img *mask, const img *outlines, merlin_calibration *c)
+status ball_check(const img *mask, const img *outlines, merlin_calibration *c)
 {
-    doubt_shading(c);
+    check_shading(c);
     if (!c->from_mask) return OK;
     if (overlap(mask, &c->circle) < (double)ROUND)
         warnings_add(&c->warnings, "mask_not_round",
                      "the mask is no disc, and the circle that fits its edge, at %.0f, %.0f with radius %.1f, may not "
                      "be the ball's outline: compare it in calibration.png",
                      (double)c->circle.x, (double)c->circle.y, (double)c->circle.radius);
-    return doubt_place(outlines, c);
+    return check_place(outlines, c);
 }

@@ -58,6 +58,6 @@ bool ball_dark_level(const img *picture, const ball_view *view, vec3 light, floa
 
 /* Adds what is to be doubted of lights that were found: shading_unlike, and of a mask's circle mask_not_round and
  * circle_unsure. mask: as the capture has it; outlines: of the brightest that each pixel is, as ball_find takes it. */
-status ball_doubt(const img *mask, const img *outlines, merlin_calibration *c);
+status ball_check(const img *mask, const img *outlines, merlin_calibration *c);
 
 #endif

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Arrays of numbers from the files of other worlds: MATLAB v5 (.mat) and NumPy (.npz). Bounds-checked against damaged
- * and hostile files.
+/* Reads arrays of numbers from MATLAB v5 (.mat) and NumPy (.npz) files, with checks of all bounds against damaged and
+ * hostile files.
  *
  *     number_array a;
  *     status s = mat_read("Normal_gt.mat", "Normal_gt", &a);      512 x 612 x 3
  *     float n = a.data[array_at(&a, row, column, 2)];
- *     array_free(&a); */
+ *     array_free(&a);
+ */
 #ifndef MERLIN_STEREO_CAPTURE_ARRAY_FILE_H
 #define MERLIN_STEREO_CAPTURE_ARRAY_FILE_H
 
@@ -34,11 +35,11 @@ static inline size_t array_at(const number_array *a, size_t i, size_t j, size_t 
 
 void array_free(number_array *a);
 
-/* A variable of a MATLAB v5 file (little endian; plain or compressed; real numbers of any class). */
+/* Reads a variable of a MATLAB v5 file (little endian; plain or compressed; real numbers of any class). */
 status mat_read(const char *path, const char *variable, number_array *out);
 status mat_parse(const char *bytes, size_t size, const char *where, const char *variable, number_array *out);
 
-/* A member ("zgt" or "zgt.npy") of a NumPy .npz (stored or deflated; little-endian floats and integers). */
+/* Reads a member ("zgt" or "zgt.npy") of a NumPy .npz (stored or deflated; little-endian floats and integers). */
 status npz_read(const char *path, const char *member, number_array *out);
 status npz_parse(const char *bytes, size_t size, const char *where, const char *member, number_array *out);
 

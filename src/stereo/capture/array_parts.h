@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the readers of .mat and .npz share: numbers from bytes, sizes within reason, zlib. */
+/* Functions shared by the readers of .mat and .npz: numbers from bytes, checks of sizes, zlib. */
 #ifndef MERLIN_STEREO_CAPTURE_ARRAY_PARTS_H
 #define MERLIN_STEREO_CAPTURE_ARRAY_PARTS_H
 
@@ -7,7 +7,8 @@
 
 #include "stereo/capture/array_file.h"
 
-/* More than any picture's normals; a damaged size beyond it is refused before memory is asked for. */
+/* Largest array in bytes, more than any picture's normals; a damaged size beyond it is refused before memory is
+ * allocated. */
 #define ARRAY_MOST_BYTES ((size_t)1 << 30)
 
 typedef enum number_kind { NUMBER_FLOAT, NUMBER_SIGNED, NUMBER_UNSIGNED } number_kind;
@@ -27,17 +28,18 @@ static inline uint32_t little32(const unsigned char *p)
     return little16(p) | little16(p + 2) << 16;
 }
 
-/* Sets a->size from rank sizes; refuses none, more than three (trailing ones aside) and too many numbers. */
+/* Sets a->size from `rank` sizes; refuses none, more than three (except trailing ones) and too many numbers. */
 status array_shape(number_array *a, const uint64_t *size, size_t rank, const char *where);
-/* a->data from little-endian numbers: available bytes must hold the array's count. */
+/* Fills a->data with little-endian numbers; `available` bytes must contain all of them. */
 status array_fill(number_array *a, const unsigned char *bytes, size_t available, number_type type, const char *where);
 
-/* Inflates until wanted bytes are there; window_bits as zlib's. false: damaged, or too short. */
+/* Inflates until `wanted` bytes are there; window_bits as in zlib. Returns false if the data are damaged or too short.
+ */
 bool array_inflate(const unsigned char *from, size_t size, int window_bits, unsigned char *out, size_t wanted);
 
-/* A parser of array_file.h: of so many bytes, by the name of the array in them. */
+/* A parser of array_file.h: reads the array of this name from bytes. */
 typedef status array_parser(const char *bytes, size_t size, const char *where, const char *name, number_array *out);
-/* The array of that name in a file, by its parser. */
+/* Reads the array of this name from a file by its parser. */
 status array_read(array_parser *parse, const char *path, const char *name, number_array *out);
 
 #endif

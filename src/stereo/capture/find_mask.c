@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* The mask of a capture that has none. In the object is what some light brings above black and, where the picture's
- * edge is dark, what is brighter than that edge in the root mean square: noise and black cloth are no object. Specks go
- * then, and small holes, of dark paint, are filled. How right that is is in docs/notes/masks.md. */
+/* Finds the mask of a capture that has none. The object consists of pixels that some light raises above black and, if
+ * the picture's edge is dark, whose root mean square is brighter than that edge, which excludes noise and black cloth.
+ * Then specks are removed, and small holes, which are dark paint, filled. docs/notes/masks.md states how good the
+ * result is. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -10,23 +11,23 @@
 #include "stereo/capture/capture_parts.h"
 
 enum { LEAST_EDGE = 2, SAMPLE = 65536 };
-/* Width of the edge, in the picture's shorter side. */
+/* Width of the edge, as a share of the picture's shorter side. */
 static const double edge_width = 0.02;
-/* The edge is background where its median is less than the first share of what 199 of 200 pixels stay below: an object
- * must have one pixel in 200. */
+/* The edge is background if its median is less than this share of the value that 199 of 200 pixels stay below, as an
+ * object has at least one pixel in 200. */
 static const float dark = 0.05f;
 static const double bright = 0.995;
-/* What is surely no background: above the edge's median by so many of its standard deviations, which its median
- * absolute deviation tells; noise reaches five among millions of pixels. And what is so where it hangs together with
- * such. */
+/* Thresholds above the edge's median, in standard deviations by its median absolute deviation: pixels above the first
+ * are certainly no background, as noise reaches five among millions of pixels; pixels above the second are object if
+ * they are connected with such. */
 static const float surely = 8, possibly = 3, deviation_of_median = 1.4826f;
-/* The deviation is no less than this share of the median: most of a cloth may have one and the same of 256 codes. */
+/* Least deviation, as a share of the median: most of a cloth may have the same one of 256 codes. */
 static const float least_deviation = 0.05f;
 
-/* Of the object's pixels: separate pieces of less are specks, holes of less are dark paint. */
+/* Share of the object's pixels: smaller separate pieces are specks, smaller holes dark paint. */
 static const double small = 0.01;
 
-/* Of levels; below 0 if the pictures' edge is no background. */
+/* Thresholds of levels; below 0 if the pictures' edge is not background. */
 typedef struct thresholds {
     float sure, possible;
 } thresholds;
@@ -37,11 +38,11 @@ static int edge_pixels(const img *level)
     return wide < LEAST_EDGE ? LEAST_EDGE : wide;
 }
 
-/* At most SAMPLE levels, sorted: of all pixels or, if wide > 0, of those this near to the picture's edge. */
+/* Samples at most SAMPLE levels, sorted: of all pixels or, if wide > 0, of those this close to the picture's edge. */
 static size_t sorted_sample(const img *level, int wide, float *sample)
 {
     size_t count = 0, seen = 0, pixels = (size_t)level->width * (size_t)level->height;
-    const size_t step = (pixels / SAMPLE + 1) | 1; /* odd, so as not to keep to some columns */
+    const size_t step = (pixels / SAMPLE + 1) | 1; /* odd, so that samples are not all in a few columns */
     for (int y = 0; y < level->height; y++) {
         bool inside = wide > 0 && y >= wide && y < level->height - wide;
         for (int x = 0; x < level->width; x++) {
@@ -53,7 +54,7 @@ static size_t sorted_sample(const img *level, int wide, float *sample)
     return count;
 }
 
-/* sample: room for SAMPLE. */
+/* Finds the thresholds; sample: room for SAMPLE. */
 static thresholds edge_thresholds(const img *level, float *sample)
 {
     size_t count = sorted_sample(level, 0, sample);
@@ -68,7 +69,7 @@ static thresholds edge_thresholds(const img *level, float *sample)
     return (thresholds){median + surely * deviation, median + possibly * deviation};
 }
 
-/* What has been looked at has this added to it. */
+/* Added to pixels that have been visited. */
 enum { SEEN = 2 };
 
 static void forget_seen(img *mask)
@@ -77,7 +78,7 @@ static void forget_seen(img *mask)
         if (mask->data[p] >= SEEN) mask->data[p] -= SEEN;
 }
 
-/* The pixels that hang together with this one, into piece. */
+/* Collects the pixels connected with this one in piece. */
 static size_t gather(img *mask, size_t from, uint32_t *piece)
 {
     const float kind = mask->data[from];
@@ -96,8 +97,8 @@ static size_t gather(img *mask, size_t from, uint32_t *piece)
     return count;
 }
 
-/* Leaves in the mask what is above the lower threshold and hangs together with what is above the higher one. piece:
- * room for all pixels. */
+/* Keeps the pixels above the lower threshold that are connected with ones above the higher threshold. piece: room for
+ * all pixels. */
 static void keep_above(const img *level, thresholds t, uint32_t *piece, img *mask)
 {
     const size_t pixels = img_value_count(mask);
@@ -123,7 +124,7 @@ static bool reaches_edge(const img *mask, const uint32_t *piece, size_t count)
     return false;
 }
 
-/* Specks go, small holes are filled. piece: room for all pixels. */
+/* Removes specks and fills small holes. piece: room for all pixels. */
 static void settle_small(img *mask, uint32_t *piece)
 {
     const size_t pixels = img_value_count(mask);
@@ -141,14 +142,14 @@ static void settle_small(img *mask, uint32_t *piece)
     forget_seen(mask);
 }
 
-typedef struct looking {
+typedef struct scanning {
     merlin_capture *capture;
     img *level;
-} looking;
+} scanning;
 
-/* What is lit at all into the mask, and the mean square over pictures and channels: dark glossy objects are bright in
- * few pictures. */
-static void look_at_part(const looking *job, size_t begin, size_t end)
+/* Marks lit pixels in the mask, and computes the mean square over pictures and channels; dark glossy objects are bright
+ * in few pictures. */
+static void scan_part(const scanning *job, size_t begin, size_t end)
 {
     const merlin_capture *c = job->capture;
     const size_t channels = (size_t)c->channels;
@@ -167,12 +168,12 @@ static void look_at_part(const looking *job, size_t begin, size_t end)
     }
 }
 
-/* By parts whose mask and level stay in the cache while pictures pass. */
-static void look(void *context, size_t begin, size_t end)
+/* Processes parts small enough for their mask and level to stay in the cache over all pictures. */
+static void scan(void *context, size_t begin, size_t end)
 {
     enum { PART = 8192 };
     for (size_t p = begin; p < end; p += PART)
-        look_at_part(context, p, p + PART < end ? p + PART : end);
+        scan_part(context, p, p + PART < end ? p + PART : end);
 }
 
 status pst_capture_find_mask(merlin_capture *c)
@@ -186,7 +187,7 @@ status pst_capture_find_mask(merlin_capture *c)
     uint32_t *piece = malloc(pixels * sizeof *piece);
     if (s == OK && (!sample || !piece)) s = fail(MERLIN_NO_MEMORY, "no memory to find the object");
     if (s == OK) {
-        parallel_blocks(pixels, look, &(looking){c, &level});
+        parallel_blocks(pixels, scan, &(scanning){c, &level});
         for (size_t p = 0; p < pixels; p++)
             level.data[p] = sqrtf(level.data[p]);
         const thresholds t = edge_thresholds(&level, sample);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Which files of a folder are a capture's pictures. */
+/* Determines which files of a folder are a capture's pictures. */
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -9,9 +9,9 @@
 #include "image/read/read.h"
 #include "stereo/capture/capture_parts.h"
 
-/* Kinds of a capture's pictures; of the later ones are taken where there are none of the first: telephones leave .jpg
- * and .heic side by side. Raw ones come before what cameras develop, and behind what somebody developed, if that is all
- * of them. */
+/* Classes of a capture's pictures; a class is used only if there are none of those before it, as telephones write .jpg
+ * and .heic side by side. Raw files come before pictures that cameras process, and after pictures that a person has
+ * processed, if these are complete. */
 typedef enum picture_class { RAW, USUAL, RARE, CLASSES } picture_class;
 
 static bool has_stem(const char *name, const char *stem)
@@ -45,7 +45,7 @@ static picture_class class_of(const img_folder_file *file)
     return kind == PICTURE_UNKNOWN && !file_ends_in_any(file->name, rare) ? USUAL : RARE;
 }
 
-/* Whether somebody may have developed it, a measurement still. */
+/* Tells whether a person may have processed it in a format that preserves measurements. */
 static bool is_developed(const img_folder_file *file)
 {
     static const char *const by_camera[] = {IMAGE_CAMERA_ENDINGS, NULL};
@@ -57,7 +57,7 @@ static bool may_be_taken(const img_folder_file *file, bool numbered)
     return img_folder_is_photo(file) && !is_beside_the_capture(file->name) && (!numbered || is_numbered(file->name));
 }
 
-/* Where to look instead: in the first folder below with pictures, if there is one. */
+/* Fails and names the first subfolder with pictures, if there is one. */
 static status refuse_empty(const char *folder, bool numbered, const skipped_files *skipped)
 {
     static const char *const endings[] = {IMAGE_ENDINGS, NULL};
@@ -95,7 +95,7 @@ static status refuse_all(const char *folder, bool numbered, const img_folder *f)
     return s;
 }
 
-/* The class whose pictures are taken; CLASSES without any. */
+/* Returns the class whose pictures are used; CLASSES if there are none. */
 static picture_class choose_class(const img_folder *f, bool numbered)
 {
     size_t count[CLASSES] = {0}, developed = 0;
@@ -108,7 +108,7 @@ static picture_class choose_class(const img_folder *f, bool numbered)
     return count[USUAL] ? USUAL : count[RARE] ? RARE : CLASSES;
 }
 
-/* Those of one class move to the front, the rest keep no order; *count of them. */
+/* Moves the pictures of one class to the front, in no order; *count: their number. */
 static status list_pictures(const char *folder, bool numbered, img_folder *f, size_t *count)
 {
     *count = 0;
@@ -173,7 +173,7 @@ status pst_take_pictures(const char *folder, bool numbered, const char *lights, 
     return s;
 }
 
-/* ---- what is left aside ---- */
+/* ---- skipped files ---- */
 
 static bool is_picture_of(const merlin_capture *c, const char *name)
 {
@@ -182,7 +182,7 @@ static bool is_picture_of(const merlin_capture *c, const char *name)
     return false;
 }
 
-/* Why a picture is not one of the capture's, whose pictures are of a class. */
+/* Returns the reason why a picture does not belong to the capture, whose pictures are of class `taken`. */
 static const char *reason_of(const img_folder *f, const img_folder_file *file, picture_class taken)
 {
     if (file->is_mask) return "a mask, but another is taken";

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* led_params.txt of the LUCES layout (Mecca et al. 2021), parsed: camera and LEDs, turned into this project's axes. */
+/* Parses led_params.txt of the LUCES layout (Mecca et al. 2021): camera and LEDs, converted to this project's axes. */
 #ifndef MERLIN_STEREO_CAPTURE_LUCES_H
 #define MERLIN_STEREO_CAPTURE_LUCES_H
 
@@ -11,7 +11,7 @@ typedef struct luces_params {
     merlin_light *light; /* count */
 } luces_params;
 
-/* `where` is put in front of messages. Free light with luces_free. */
+/* Parses the text; `where` is put before messages. Free light with luces_free. */
 status luces_parse(const char *text, size_t size, const char *where, luces_params *out);
 void luces_free(luces_params *p);
 

@@ -12,7 +12,7 @@
 
 enum { NAMED = 3, NAMES = 400 };
 
-/* A folder's files, and those of them that are a capture's pictures, in order. */
+/* The files of a folder, and those that are a capture's pictures, in order. */
 typedef struct listing {
     const char *folder;
     char **paths;
@@ -35,7 +35,7 @@ static void free_listing(listing *in)
 
 /* ---- names ---- */
 
-/* The name alone of what a list may give with a path from another machine. */
+/* Returns the file name from a path that may come from another machine. */
 static const char *base_name(const char *path)
 {
     const char *slash = strrchr(path, '/'), *backslash = strrchr(path, '\\');
@@ -43,7 +43,7 @@ static const char *base_name(const char *path)
     return last ? last + 1 : path;
 }
 
-/* Ends in a dot and letters, and not with numbers behind it, of columns that are not known here. */
+/* Tells whether a name ends with a dot and letters, and not with the numbers of columns that are unknown here. */
 static bool ends_as_a_file(const char *name)
 {
     const char *dot = strrchr(name, '.');
@@ -61,8 +61,8 @@ static bool have_one_stem(const char *one, const char *other)
     return length == stem_length(other) && strncasecmp(one, other, length) == 0;
 }
 
-/* The folder's file of that name, in capitals or not, such as a list from Windows may have; else its picture with
- * another ending, or with one. NULL if there is not exactly one. */
+/* Returns the folder's file of that name, in any case, as lists from Windows may have it; else its picture with another
+ * ending, or with one. NULL if there is not exactly one. */
 static const char *find_file(const listing *in, const char *name)
 {
     const char *found = NULL;
@@ -83,7 +83,7 @@ static const char *find_file(const listing *in, const char *name)
     return alike == 1 ? found : NULL;
 }
 
-/* A number may stand before the name, in a column of its own. */
+/* Finds a listed name, before which there may be a number in a column of its own. */
 static const char *find_listed(const listing *in, const char *listed)
 {
     const char *name = base_name(listed), *found = find_file(in, name);
@@ -104,7 +104,7 @@ status pst_match_name(const char *folder, const char *name, char **found)
 
 /* ---- numbers ---- */
 
-/* Where the digits at a label's end begin. */
+/* Returns the length of a label without the digits at its end. */
 static size_t label_length(const char *label)
 {
     size_t length = strlen(label);
@@ -113,8 +113,8 @@ static size_t label_length(const char *label)
     return length;
 }
 
-/* Fills place with each light's picture, counted from 0, if the names are "Light 1", "Light 2" and on, or numbers
- * alone, from 0 or 1 in any order. */
+/* Fills place with each light's picture, counted from 0, if the names are "Light 1", "Light 2" and so on, or only
+ * numbers from 0 or 1 in any order. */
 static bool are_numbers(const light_list *list, size_t *place, bool *taken)
 {
     size_t prefix = label_length(list->name[0]), count = list->count;
@@ -144,9 +144,9 @@ static bool are_files_in_order(const light_list *list)
     return true;
 }
 
-/* ---- all of them ---- */
+/* ---- the whole ---- */
 
-/* Puts the first few names into text, and how many more there are. */
+/* Appends a name to text, if it is one of the first few, or the number of further ones. */
 static void put_name(char text[NAMES], size_t count, const char *name)
 {
     size_t length = strlen(text);
@@ -187,8 +187,8 @@ static status check_twice(const char *lights, const light_list *list, const merl
     return OK;
 }
 
-/* Whoever takes a line out of a list does not want its picture; a file that differs from one of the list in its ending
- * alone is the same picture. */
+/* Notes pictures without a light. A person who removes a line from a list does not want its picture; a file that
+ * differs only in its ending from a listed one is the same picture. */
 static void note_left_out(const listing *in, const char *lights, merlin_capture *c)
 {
     size_t count = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A capture from a folder: which layout it has, and what is read behind one another. */
+/* Reads a capture from a folder: determines its layout and calls its readers in order. */
 #include "base/file.h"
 #include "stereo/capture/capture_parts.h"
 

@@ -11,7 +11,7 @@
 
 enum { TEXT_MOST = 1 << 22 };
 
-/* Puts a zero behind the line and leaves out what programs put around a name. */
+/* Terminates a line, and removes quotes and blanks that programs put around a name. */
 static char *take_line(char **rest)
 {
     char *name = *rest, *end = name + strcspn(name, "\n");
@@ -37,7 +37,8 @@ static status set_name(const char *path, const char *folder, const char *name, i
     return s;
 }
 
-/* One file name a line, blanks around it left out, no folders: a list may not lead out of its folder. */
+/* Reads one file name per line without surrounding blanks; folders are refused, as a list must not lead out of its
+ * folder. */
 static status take_names(char *text, const char *path, const char *folder, merlin_capture *c)
 {
     int count = 0;
@@ -67,7 +68,7 @@ static status read_names(const char *path, const char *folder, merlin_capture *c
     return s;
 }
 
-/* By filenames.txt, unless the list has names itself. */
+/* Reads the pictures named by filenames.txt, unless the list itself has names. */
 static status read_named(const char *directions, const char *names, const char *folder, merlin_capture *c)
 {
     light_list list;
@@ -85,7 +86,8 @@ static status read_named(const char *directions, const char *names, const char *
     return s;
 }
 
-/* Where there is no filenames.txt, pictures are in the order of their names, as readers of the later sets take them. */
+/* Reads the layout. Without filenames.txt pictures are in the order of their names, as readers of the later data sets
+ * assume. */
 status pst_read_diligent(const char *folder, merlin_capture *c)
 {
     char *directions = file_join(folder, "light_directions.txt"), *names = file_join(folder, "filenames.txt");

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* How strong lights are, from a file of its own: one number a line, or three, or a light in each column. */
+/* Reads light intensities from a separate file: one number per line, or three, or a light in each column. */
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,7 +17,7 @@ static bool is_number_like(const text_word *w)
     return w->kind != TEXT_WORD;
 }
 
-/* The row's last words, which are numbers; 0,95 alone is one. */
+/* Returns the number of numeric words at the row's end; 0,95 counts as one. */
 static size_t count_numbers(const text_row *r)
 {
     size_t first = r->count;
@@ -37,7 +37,7 @@ static status take_value(const char *path, int line, const text_word *w, float *
     return OK;
 }
 
-/* Reads 0,95 which a comma alone parts: a whole number, and digits that are no other number. */
+/* Reads 0,95, in which only a comma separates digits: an integer, and digits that are not a number of their own. */
 static bool take_decimal_comma(const text_row *r, text_word *out)
 {
     const text_word *w = r->word;
@@ -48,7 +48,7 @@ static bool take_decimal_comma(const text_row *r, text_word *out)
     return isdigit((unsigned char)*w[1].at) && out->kind == TEXT_NUMBER;
 }
 
-/* ---- a light a line ---- */
+/* ---- a light per line ---- */
 
 static status find_light(const char *path, const text_row *r, size_t words, const char *folder, const merlin_capture *c,
                          int *light)
@@ -84,9 +84,9 @@ static status take_row(const char *path, const text_row *r, const char *folder, 
     return s;
 }
 
-/* ---- a light a column ---- */
+/* ---- a light per column ---- */
 
-/* One line for all channels, or one for each. */
+/* Tells whether the rows have one column per light: one row for all channels, or one for each. */
 static bool are_columns(const text_row *const *row, size_t count, const merlin_capture *c)
 {
     size_t lights = (size_t)c->count;
@@ -107,9 +107,9 @@ static status take_columns(const char *path, const text_row *const *row, size_t 
     return s;
 }
 
-/* ---- all of it ---- */
+/* ---- the whole ---- */
 
-/* Without comments, and the words before the first number. */
+/* Lists the rows without comments, and without words before the first number. */
 static status list_rows(const text_rows *rows, const text_row ***out, size_t *count)
 {
     *count = 0;
@@ -158,8 +158,7 @@ static status read_intensities(const char *path, const char *folder, merlin_capt
     return s;
 }
 
-/* Finds a folder's file of intensities; refuses it where there is one already (*path): both say the same of the lights.
- */
+/* Finds a folder's file of intensities; fails if *path is set already, as both would state the same lights. */
 static status find_in(const char *folder, char **path)
 {
     static const char *const bases[] = {"light_intensities", "light_intensity", "intensities"};

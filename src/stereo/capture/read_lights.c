@@ -9,7 +9,8 @@
 #include "stereo/capture/capture_parts.h"
 #include "stereo/capture/match_lights.h"
 
-/* Finds the file asked for, else lights.txt and the like, else the folder's .lp; *path is NULL if there is none. */
+/* Finds the file requested, else lights.txt and similar names, else the folder's .lp; *path is NULL if there is none.
+ */
 static status find_lights(const char *folder, const char *asked, char **path)
 {
     size_t found = 0;
@@ -22,8 +23,8 @@ static status find_lights(const char *folder, const char *asked, char **path)
     return fail(MERLIN_BAD_INPUT, "%s has %zu .lp files; name the one that holds the lights", folder, found);
 }
 
-/* Returns whether lights listed for --near are directions: as places all are as far from the camera, and some behind
- * it. */
+/* Tells whether lights listed for --near are directions: as positions they would all be at one distance from the
+ * camera, and some behind it. */
 static bool are_directions(const light_list *list)
 {
     bool behind = list->angles;
@@ -32,7 +33,7 @@ static bool are_directions(const light_list *list)
     return behind && light_list_is_unit(list);
 }
 
-/* Returns whether the numbers are too long or too short for directions, which a dome has from its middle. */
+/* Tells whether the numbers are too long or too short for directions from the middle of a dome. */
 static bool are_places(const light_list *list)
 {
     for (size_t i = 0; i < list->count; i++)
@@ -40,7 +41,7 @@ static bool are_places(const light_list *list)
     return false;
 }
 
-/* Returns whether some light is before (side 1) or behind (side -1) what stands at z = 0. */
+/* Tells whether some light is in front of (side 1) or behind (side -1) the plane z = 0. */
 static bool has_some(const light_list *list, real side)
 {
     for (size_t i = 0; i < list->count; i++)
@@ -48,8 +49,8 @@ static bool has_some(const light_list *list, real side)
     return false;
 }
 
-/* Finds whether an .lp file's positions are about the object, which a dome stands round. Lights behind it would light
- * nothing that is seen, so that where all z are negative the camera must be meant. */
+/* Determines whether an .lp file's positions are relative to the object, around which a dome stands. Lights behind it
+ * would light nothing visible, so that positions with only negative z must be relative to the camera. */
 static status find_frame(const char *path, const light_list *list, bool *about)
 {
     *about = has_some(list, 1);
@@ -101,7 +102,7 @@ static status set_directions(const char *path, const light_list *list, merlin_ca
 status pst_set_lights(const char *path, const light_list *list, const merlin_capture_files *options, merlin_capture *c)
 {
     c->lighting = options->near_lights ? MERLIN_NEAR_LIGHTS : MERLIN_DISTANT_LIGHTS;
-    c->intensities_known = true; /* who lists lights and says nothing of their intensities means equal ones */
+    c->intensities_known = true; /* a list of lights without intensities means equal ones */
     for (size_t i = 0; i < list->count && list->intensity; i++)
         vec3_put(list->intensity[i], c->light[i].intensity);
     if (list->note[0]) warnings_add(&c->noticed, "lights_list", "%s: %s", path, list->note);

@@ -10,7 +10,7 @@
 #include "stereo/capture/luces.h"
 
 enum { TEXT_MOST = 1 << 22, CAMERA_NUMBERS = 7, NUMBERS_MOST = 16 };
-static const double LARGEST = 1e7; /* mm or pixels: ten kilometres is no desk */
+static const double LARGEST = 1e7; /* in mm or pixels: captures are not ten kilometres large */
 
 void luces_free(luces_params *p)
 {
@@ -18,7 +18,8 @@ void luces_free(luces_params *p)
     *p = (luces_params){0};
 }
 
-/* The file's positions and directions have y down and z away from the camera, unlike its picture of normals. */
+/* Converts positions and directions, which have y down and z away from the camera in this file, unlike in the normals'
+ * picture. */
 static vec3 turn(const double v[3])
 {
     return vec3_make((real)v[0], (real)-v[1], (real)-v[2]);
@@ -26,7 +27,7 @@ static vec3 turn(const double v[3])
 
 typedef struct numbers {
     const char *where;
-    int line, count; /* no numbers: the line begins with something else, as headers do */
+    int line, count; /* number of values; 0 if the line begins with something else, as headers do */
     double value[NUMBERS_MOST];
 } numbers;
 
@@ -73,12 +74,12 @@ static status parse_camera(const numbers *t, luces_params *p)
     p->count = (int)v[0];
     p->height = (int)v[1];
     p->width = (int)v[2];
-    /* the data set's own code puts the middle of the first pixel at 0 */
+    /* the data set's own code has the centre of the first pixel at 0 */
     p->camera = (pinhole){(float)v[3], (float)v[4] + 0.5f, (float)v[5] + 0.5f, (float)v[6]};
     return OK;
 }
 
-/* position, direction, intensity (1 or 3), attenuation; the data set's own files end their lines with a 0 besides,
+/* position, direction, intensity (1 or 3), attenuation; the data set's own files have a further 0 at the end of lines,
  * which its code does not read */
 static status parse_light(const numbers *t, merlin_light *out)
 {
@@ -161,7 +162,8 @@ static status read_params(const char *folder, luces_params *out)
     return s;
 }
 
-/* An object's folder RAW has all files again, for what the sensor gave: the three colours in one channel. */
+/* Fails for an object's folder RAW, which has all files again as the sensor's mosaic, with three colours in one
+ * channel. */
 static status refuse_mosaics(const char *folder)
 {
     char *whole = realpath(folder, NULL);
@@ -191,8 +193,8 @@ status pst_read_luces(const char *folder, merlin_capture *c)
     return s;
 }
 
-/* The release has y up and z toward the camera; other copies have the axes of led_params.txt. Which it is shows in the
- * object's front, which faces the camera. */
+/* Converts the normals. The release has y up and z toward the camera, other copies the axes of led_params.txt; the
+ * object's front, which faces the camera, reveals which. */
 static void decode_normals(merlin_capture *c)
 {
     img *n = &c->normal_true;

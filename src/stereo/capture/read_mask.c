@@ -21,7 +21,7 @@ status pst_find_mask(const char *folder, const char *asked, char **path)
     return !asked || *path ? OK : fail(MERLIN_NO_MEMORY, "no memory for a file name");
 }
 
-/* A surface's smallest piece is a triangle of three of a square's four pixels. */
+/* Tells whether the mask has the smallest possible surface: a triangle of three of a square's four pixels. */
 static bool holds_a_triangle(const img *mask)
 {
     const float *m = mask->data;
@@ -32,7 +32,8 @@ static bool holds_a_triangle(const img *mask)
     return false;
 }
 
-/* Dim pictures are no black ones: whoever gives a mask of what is dark knows that it is. */
+/* Tells whether some pixel is lit in some picture. Dim pictures pass, as a given mask may select dark pixels on
+ * purpose. */
 static bool is_ever_lit(const merlin_capture *c)
 {
     const size_t pixels = (size_t)c->width * (size_t)c->height, channels = (size_t)c->channels;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* MATLAB's "MAT-File Format" (MathWorks, version 5 part): a header of 128 bytes, then elements of tag and data, each on
- * a multiple of eight bytes; a matrix is an element of elements: flags, sizes, name, real part. */
+/* Reads MATLAB's "MAT-File Format" (MathWorks, version 5 part): a header of 128 bytes, then elements of tag and data,
+ * each at a multiple of eight bytes; a matrix is an element of elements: flags, sizes, name, real part. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,7 +26,8 @@ typedef struct element {
     span data;
 } element;
 
-/* Takes the next element off the span; false if it is not whole. Small elements keep their data in the tag. */
+/* Takes the next element from the span; returns false if it is not complete. Small elements have their data in the tag.
+ */
 static bool take_element(span *from, element *out)
 {
     if (from->left < 8) return false;
@@ -91,7 +92,7 @@ static status read_matrix(span body, wanted *w)
     return read_values(body, &sizes, w);
 }
 
-/* What zlib can make of size bytes at most (its ratio is below 1032). */
+/* Tells whether zlib can inflate `size` bytes to this size (its ratio is below 1032). */
 static bool possible_size(size_t inflated, size_t size)
 {
     return inflated <= ARRAY_MOST_BYTES && inflated / 1032 <= size;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* NumPy's .npz: a ZIP archive (PKWARE's APPNOTE.TXT; sizes from the central directory, as writers that stream leave
- * them out of the local headers) of .npy files (NumPy Enhancement Proposal 1): magic, version, a Python dictionary,
- * numbers. */
+/* Reads NumPy's .npz: a ZIP archive (PKWARE's APPNOTE.TXT; sizes are taken from the central directory, as streaming
+ * writers omit them from the local headers) of .npy files (NumPy Enhancement Proposal 1): magic, version, a Python
+ * dictionary, numbers. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,7 +25,7 @@ static status damaged(const zip *z, const char *what)
     return fail(MERLIN_BAD_INPUT, "%s: %s is damaged", z->where, what);
 }
 
-/* The end record, which a comment may follow; NULL if there is none. */
+/* Returns the end record, which a comment may follow; NULL if there is none. */
 static const unsigned char *find_end(const zip *z)
 {
     for (size_t back = END_SIZE; back <= z->size && back <= END_SIZE + MOST_COMMENT; back++) {
@@ -86,7 +86,7 @@ static status unpack(const zip *z, const member *m, unsigned char **out)
     return s;
 }
 
-/* What follows 'key': in the header's dictionary; NULL if it is not there. */
+/* Returns what follows 'key': in the header's dictionary; NULL if it is not there. */
 static const char *value_of(const char *header, const char *key)
 {
     const char *at = strstr(header, key);

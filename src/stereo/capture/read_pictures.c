@@ -9,16 +9,16 @@
 #include "image/read/read.h"
 #include "stereo/capture/capture_parts.h"
 
-/* Unclipped floats are stored so that their brightest stays below what solvers take for saturated. */
+/* Full scale of the brightest unclipped float, below what solvers regard as saturated. */
 static const float FLOAT_CEILING = 0.97f;
 
-/* Floats that are all below have a full scale of their own: in 16 bits dim ones would be a few codes, and black. */
+/* Brightest value below which floats are scaled up: dim ones would become a few codes in 16 bits, and black. */
 static const float FLOAT_DIM = 0.1f;
 
-/* Pictures read side by side: one takes as much memory while it is read as many do afterwards. */
+/* Number of pictures that are read in parallel, as one takes as much memory while it is read as many do afterwards. */
 enum { READERS = 4 };
 
-/* Numbers of a picture's values that are not dark, that are below the ambient picture's, and that differ from these. */
+/* Numbers of a picture's values that are not dark, that are below the ambient picture's, and that differ from it. */
 typedef struct ambient_sums {
     size_t lit, below, other;
 } ambient_sums;
@@ -27,18 +27,18 @@ typedef struct reading {
     const char *folder;
     bool decode;
     watch watch;
-    float scale; /* of floats, so that all pictures fit 16 bits */
+    float scale; /* factor of floats, so that all pictures fit 16 bits */
     img ambient;
     char *ambient_path;
-    ambient_sums *beside; /* of every picture; NULL without an ambient one */
-    img *first;           /* the first picture, until it is stored */
-    int bits;             /* its */
-    float *brightest;     /* of every picture, of floats */
+    ambient_sums *beside; /* counts for every picture; NULL without an ambient one */
+    img *first;           /* first picture, until it is stored */
+    int bits;             /* its bits */
+    float *brightest;     /* brightest float of every picture */
     merlin_capture *into;
 } reading;
 
-/* Finds out how the first picture is read; others of its size are read alike. */
-static status look_at_first(const reading *r, merlin_capture *c)
+/* Determines how the first picture is read; others of its size are read in the same way. */
+static status inspect_first(const reading *r, merlin_capture *c)
 {
     char *path = file_join(r->folder, c->name[0]);
     img_facts facts = {1, 1};
@@ -58,7 +58,7 @@ static status read_one(const reading *r, const char *name, img *out, int *bits)
     return s;
 }
 
-/* Floats have a unit of their own, of which whole numbers beside them say nothing. */
+/* Describes a kind of picture. Floats have their own unit, which is unrelated to that of integers. */
 static const char *kind_of(int bits)
 {
     return bits == 32 ? "floats" : "whole numbers";
@@ -78,8 +78,9 @@ static status check_shape(const reading *r, const merlin_capture *c, const char 
     return OK;
 }
 
-/* Light only adds: a value that is plainly below the ambient picture's says that this is none. */
-static void hold_against_ambient(const reading *r, int i, const img *picture)
+/* Counts values below the ambient picture's: as light only adds, clearly lower values show that it is not ambient
+ * light. */
+static void compare_with_ambient(const reading *r, int i, const img *picture)
 {
     static const float noise = 0.02f;
     ambient_sums sums = {0};
@@ -102,7 +103,7 @@ static status store(const reading *r, const img *picture, uint16_t **out)
     const float *ambient = r->ambient.data;
     for (size_t i = 0; i < count; i++) {
         float value = picture->data[i] * r->scale, left = ambient ? value - ambient[i] : value;
-        /* what the sensor clipped stays recognizable after the subtraction */
+        /* keeps values that the sensor clipped recognizable after the subtraction */
         float code = left * 65535 + 0.5f;
         codes[i] = value >= 1 || code >= 65535 ? 65535 : code > 0 ? (uint16_t)code : 0;
     }
@@ -146,7 +147,7 @@ static status find_brightest(const reading *r, int i)
     return OK;
 }
 
-/* The factor that brings the brightest float of all pictures to the ceiling; 1 if they fit and are not dim. */
+/* Finds the factor that brings the brightest float of all pictures to the ceiling; 1 if they fit and are not dim. */
 static status measure_scale(reading *r)
 {
     float most = 0;
@@ -168,7 +169,7 @@ static status read_first_shape(reading *r, merlin_capture *c)
     if (c->width && (c->width != first->width || c->height != first->height))
         s = fail(MERLIN_BAD_INPUT, "%s/%s is %d x %d pixels, but the lights' file says %d x %d", r->folder, c->name[0],
                  first->width, first->height, c->width, c->height);
-    if (s == OK) s = look_at_first(r, c);
+    if (s == OK) s = inspect_first(r, c);
     c->width = first->width;
     c->height = first->height;
     c->channels = first->channels;
@@ -201,8 +202,8 @@ static status read_ambient(reading *r, const char *asked, const merlin_capture *
     return r->beside ? OK : fail(MERLIN_NO_MEMORY, "no memory for %d sums", c->count);
 }
 
-/* Returns the first picture that has the ambient picture's values, NULL if none has; dark ones, which are all alike, do
- * not count. */
+/* Returns the name of the first picture whose values equal the ambient picture's, NULL if there is none; dark ones,
+ * which are all similar, do not count. */
 static const char *copied_as_ambient(const reading *r)
 {
     for (int i = 0; i < r->into->count; i++)
@@ -210,8 +211,8 @@ static const char *copied_as_ambient(const reading *r)
     return NULL;
 }
 
-/* Refuses or doubts an ambient picture that is one under a light, or of another exposure: less that, a picture shows
- * nothing. */
+/* Fails or warns if the ambient picture was taken under a light, or with another exposure, as subtracting it would
+ * leave nothing. */
 static status check_ambient(const reading *r, merlin_capture *c)
 {
     static const double few = 0.05, all = 0.95;
@@ -242,7 +243,7 @@ static status check_ambient(const reading *r, merlin_capture *c)
     return OK;
 }
 
-/* The first has been read for its shape. */
+/* Reads a picture; the first one was read already to determine its format. */
 static status get_picture(const reading *r, int i, img *out, int *bits)
 {
     if (i > 0) return read_one(r, r->into->name[i], out, bits);
@@ -259,7 +260,7 @@ static status take_picture(const reading *r, int i)
     status s = get_picture(r, i, &picture, &bits);
     if (s != OK) return s;
     s = check_shape(r, r->into, r->into->name[i], &picture, bits);
-    if (s == OK && r->ambient.data) hold_against_ambient(r, i, &picture);
+    if (s == OK && r->ambient.data) compare_with_ambient(r, i, &picture);
     if (s == OK) s = store(r, &picture, &r->into->picture[i]);
     img_free(&picture);
     return s;

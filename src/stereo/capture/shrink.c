@@ -125,7 +125,7 @@ status pst_shrink(const merlin_capture *c, pst_blocks blocks, float saturation, 
     return OK;
 }
 
-/* Puts these pictures and their lights into the arrays of `some`, which are the caller's, and shrinks them. */
+/* Selects these pictures and their lights in the caller's arrays of `some`, and shrinks them. */
 static status shrink_some(const merlin_capture *c, int pixels, const int picture[], merlin_capture *some,
                           merlin_capture *out)
 {
@@ -155,10 +155,10 @@ status pst_shrink_to(const merlin_capture *c, int pixels, int most_pictures, int
     return s;
 }
 
-/* Bilinear between the small pixels' middles, as far as they are on the object. */
+/* Interpolates bilinearly between the small pixels' centres, as far as these are on the object. */
 static float between(const img *small, const img *small_mask, float x, float y)
 {
-    int left = (int)(x + 1) - 1, top = (int)(y + 1) - 1; /* rounded down: -1 at the least */
+    int left = (int)(x + 1) - 1, top = (int)(y + 1) - 1; /* rounded down: at least -1 */
     float sum = 0, weights = 0;
     for (int k = 0; k < 4; k++) {
         int i = left + k % 2, j = top + k / 2;

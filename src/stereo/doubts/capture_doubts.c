@@ -9,25 +9,25 @@
 #include "stereo/doubts/light_check.h"
 #include "stereo/doubts/model_check.h"
 
-/* Pixels and values that are looked at. */
+/* Number of pixels and values that are examined. */
 enum { SOME = 1 << 16 };
-/* The least of unit directions' spreads against the largest: a ring of lights 6 degrees from its axis has 0.08, and
- * errors ten times those of lights from all round. */
+/* Least ratio of the smallest to the largest spread of unit directions: a ring of lights 6 degrees from its axis has
+ * 0.08, and ten times the errors of lights from all around. */
 static const double alike = 0.08;
 /* Cosine between the directions of lights that may have the same picture. */
 static const float same_direction = 0.9994f;
-/* Sines below which a light is not merely at the horizon. */
+/* Sine of the elevation below which a light is not just at the horizon. */
 static const float behind = -0.05f;
-/* The same above which a near light is not merely beside the camera. */
+/* The same above which a near light is not just next to the camera. */
 static const float behind_camera = 0.1f;
-/* Between the lights' distance from the object and the object's from the camera. */
+/* Ratio of the lights' distance from the object to the object's from the camera from which on their units differ. */
 static const float another_unit = 30;
-/* The share of the object's pixels that are saturated in half of the pictures. */
+/* Share of the object's pixels that are saturated in half of the pictures. */
 static const double much_burnt_out = 0.05;
 
 /* ---- lights ---- */
 
-static void doubt_directions(const merlin_capture *c, warnings *out)
+static void check_directions(const merlin_capture *c, warnings *out)
 {
     double m[9] = {0}, spread[6];
     int away = 0;
@@ -50,8 +50,9 @@ static void doubt_directions(const merlin_capture *c, warnings *out)
                      "pictures: light the object from more sides");
 }
 
-/* Places about the object, or with z away from the camera, give pictures that are explained nearly as well. */
-static void doubt_places(const merlin_capture *c, warnings *out)
+/* Warns about positions behind the camera. Positions relative to the object, or with z away from the camera, explain
+ * the pictures nearly as well. */
+static void check_positions(const merlin_capture *c, warnings *out)
 {
     for (int k = 0; k < c->count; k++)
         if (c->light[k].position[2] < behind_camera * vec3_length(vec3_of(c->light[k].position))) return;
@@ -62,7 +63,7 @@ static void doubt_places(const merlin_capture *c, warnings *out)
         c->count);
 }
 
-static void doubt_unit(const merlin_capture *c, warnings *out)
+static void check_unit(const merlin_capture *c, warnings *out)
 {
     float distance = c->camera.distance, sum = 0;
     if (!(distance > 0)) return;
@@ -130,7 +131,7 @@ static bool is_saturated(const merlin_capture *c, int k, size_t pixel)
     return false;
 }
 
-static void doubt_exposure(const merlin_capture *c, warnings *out)
+static void check_exposure(const merlin_capture *c, warnings *out)
 {
     size_t pixels = (size_t)c->width * (size_t)c->height, step = pixels / SOME + 1, seen = 0, burnt = 0;
     for (size_t i = 0; i < pixels; i += step) {
@@ -149,7 +150,7 @@ static void doubt_exposure(const merlin_capture *c, warnings *out)
             100 * (double)burnt / (double)seen);
 }
 
-/* Returns how bright a pixel is where it is brightest, as a share of full scale. */
+/* Returns a pixel's brightest value as a share of full scale. */
 static float brightest_at(const merlin_capture *c, size_t pixel)
 {
     size_t channels = (size_t)c->channels;
@@ -160,8 +161,8 @@ static float brightest_at(const merlin_capture *c, size_t pixel)
     return (float)most / 65535;
 }
 
-/* Lamps light what they are pointed at: an object that is black in all pictures before what is bright is none. */
-static void doubt_mask(const merlin_capture *c, warnings *out)
+/* Warns about a mask whose pixels are black in all pictures while the rest is bright, as lamps point at the object. */
+static void check_mask(const merlin_capture *c, warnings *out)
 {
     size_t pixels = (size_t)c->width * (size_t)c->height, step = pixels / SOME + 1, inside = 0, outside = 0;
     size_t black = 0, bright = 0;
@@ -181,9 +182,9 @@ static void doubt_mask(const merlin_capture *c, warnings *out)
             100 * (double)black / (double)inside, 100 * (double)bright / (double)outside);
 }
 
-/* ---- what solvers and readers noticed ---- */
+/* ---- warnings of solvers and readers ---- */
 
-static void pass_on(const merlin_capture *c, const merlin_surface *s, warnings *out)
+static void report_noticed(const merlin_capture *c, const merlin_surface *s, warnings *out)
 {
     if (c->reduced > 1)
         warnings_add(out, "reduced_size",
@@ -224,12 +225,12 @@ status pst_doubts(const merlin_capture *c, const merlin_surface *s, warnings *ou
     bool known = s->method != MERLIN_STEREO_UNCALIBRATED;
     status result = known ? pst_check_lights(c, s, out) : OK;
     if (known && result == OK && !warnings_find(out, "lights_do_not_fit")) result = pst_check_model(c, s, out);
-    if (known && c->lighting == MERLIN_DISTANT_LIGHTS) doubt_directions(c, out);
-    if (known && c->lighting == MERLIN_NEAR_LIGHTS) doubt_places(c, out);
-    if (known && c->lighting == MERLIN_NEAR_LIGHTS) doubt_unit(c, out);
+    if (known && c->lighting == MERLIN_DISTANT_LIGHTS) check_directions(c, out);
+    if (known && c->lighting == MERLIN_NEAR_LIGHTS) check_positions(c, out);
+    if (known && c->lighting == MERLIN_NEAR_LIGHTS) check_unit(c, out);
     if (result == OK) result = pst_doubt_copies(c, out);
-    doubt_exposure(c, out);
-    doubt_mask(c, out);
-    pass_on(c, s, out);
+    check_exposure(c, out);
+    check_mask(c, out);
+    report_noticed(c, s, out);
     return result;
 }

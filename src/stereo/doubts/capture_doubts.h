@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* Doubts tell a person what to know of a capture and of the surface found from it before they trust that.
+/* Warnings about a capture and the surface found from it: reasons not to trust the result.
  *
  *     warnings doubts = {0};
- *     status s = pst_doubts(&capture, &surface, &doubts); */
+ *     status s = pst_doubts(&capture, &surface, &doubts);
+ */
 #ifndef MERLIN_STEREO_DOUBTS_CAPTURE_DOUBTS_H
 #define MERLIN_STEREO_DOUBTS_CAPTURE_DOUBTS_H
 
@@ -11,9 +12,9 @@
 
 /* Adds lights_do_not_fit, other_distance, other_lens, other_tones, strengths_unequal, mask_inverted, lights_behind,
  * lights_alike, lights_behind_camera, other_unit, same_pictures, burnt_out, lights_in_order, strengths_unsure,
- * distance_unsure and lights_unsure, where they hold. */
+ * distance_unsure and lights_unsure, if they apply. */
 status pst_doubts(const merlin_capture *c, const merlin_surface *s, warnings *out);
-/* Adds same_pictures alone, if it holds. */
+/* Adds only same_pictures, if it applies. */
 status pst_doubt_copies(const merlin_capture *c, warnings *out);
 
 #endif

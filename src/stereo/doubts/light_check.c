@@ -12,35 +12,35 @@
 
 enum { WORDS = 256, FEWEST = 4, PAIRED = 64 };
 
-/* Bounds beyond which the list is in doubt: how much less of the pictures another arrangement of the same lights leaves
- * unexplained, and how many times less beyond what any three lights leave. Of 70 rendered and five real captures no
- * other order comes near; in another order those leave 2.3 times as much and more. */
+/* Thresholds of the warning: by how much less of the pictures another arrangement of the same lights must leave
+ * unexplained, and by which factor relative to what exceeds the best three lights. Of 70 rendered and five real
+ * captures no other order comes close; in another order those leave 2.3 times as much and more. */
 static const double plainly_less = 0.02, times_less = 2;
-/* The rest that a list that fits may leave beyond what any three lights leave, unless that is much itself. Measured:
- * 0.003 to 0.12, at most 0.087 where it is more than twice that; in a random order 0.11 to 0.55. */
+/* Largest residual of a correct list beyond that of the best three lights, unless that is large itself. Measured: 0.003
+ * to 0.12, at most 0.087 if it is more than twice that; in a random order 0.11 to 0.55. */
 static const double most_beyond = 0.1;
-/* The same where lights are so near that what the object's middle has of them is not the whole's: 0.16 at most. */
+/* The same for lights so near that the whole object does not receive the light of its middle: 0.16 at most. */
 static const double most_beyond_near = 0.25;
-/* The least gain of pst_light_turn: right axes are better than others by 0.3 and more, wrong ones worse by as much, in
+/* Least gain of pst_light_turn: correct axes are better than others by 0.3 and more, wrong ones worse by as much, in
  * all but one of 70 rendered captures. */
 static const double turned = 0.35;
-/* Share of the outline where normals point steeply inward, of what is no hollow. */
+/* Share of the outline where normals point steeply inward, for an object that is not hollow. */
 static const double inward = 0.4;
 
 typedef struct check {
     const merlin_capture *capture;
     pst_light_fit fit;
-    double own, least;   /* unexplained by the list, and by the best three lights */
-    vec3 *light, *trial; /* that fit best; one arrangement */
-    char remedy[WORDS];  /* what makes them fit; "": nothing that is known */
-    double best;         /* unexplained by light */
+    double own, least;   /* share left unexplained by the list, and by the best three lights */
+    vec3 *light, *trial; /* the lights that fit best; an arrangement */
+    char remedy[WORDS];  /* the change that makes them fit; "": none is known */
+    double best;         /* share left unexplained by `light` */
 } check;
 
 /* ---- arrangements ---- */
 
 static void try_arrangement(check *c, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Takes trial if it is plainly better than the list and than what was found. */
+/* Uses the arrangement if it is clearly better than the list and the best one so far. */
 static void try_arrangement(check *c, const char *format, ...)
 {
     double left = pst_light_fit_unexplained(&c->fit, c->trial, -1);
@@ -59,7 +59,8 @@ static int by_name(const void *a, const void *b)
     return strcmp(**(char **const *)a, **(char **const *)b);
 }
 
-/* place[k]: of picture k in the alphabet, where 10.png stands before 9.png; false without names. */
+/* Fills place[k] with picture k's place in alphabetical order, where 10.png precedes 9.png; returns false without
+ * names. */
 static status alphabetical(const merlin_capture *c, int *place, bool *differs)
 {
     *differs = false;
@@ -169,7 +170,8 @@ static void name_turn(const pst_light_turn *t, char words[WORDS])
                  t->mirrored ? "y reversed and " : "", abs(degrees), degrees > 0 ? "anti" : "");
 }
 
-/* Reversed in x and y a ball is a bowl: only an outline that is no bowl's tells. */
+/* Tells whether the axes are unambiguous: reversed in x and y a ball is a bowl, and only the outline of an object that
+ * is not one tells. */
 static bool is_plain(const pst_light_turn *t)
 {
     bool bowl = !t->axes && !t->mirrored && fabs(t->degrees) > 135;
@@ -193,7 +195,7 @@ static status check_axes(check *c, bool *doubt)
     return OK;
 }
 
-/* ---- all of it ---- */
+/* ---- the whole ---- */
 
 static status check_arrangement(check *c)
 {
@@ -208,7 +210,7 @@ static status check_arrangement(check *c)
     return OK;
 }
 
-static void tell(const check *c, warnings *out)
+static void report(const check *c, warnings *out)
 {
     const char *worst = "and normals may be many degrees off";
     if (c->remedy[0])
@@ -232,7 +234,7 @@ static status check_all(check *c, warnings *out)
     bool near = c->capture->lighting == MERLIN_NEAR_LIGHTS;
     bool lost = !doubt && c->own - c->least > fmax(near ? most_beyond_near : most_beyond, c->least);
     if (s == OK && !lost) s = check_axes(c, &doubt);
-    if (s == OK && (doubt || lost)) tell(c, out);
+    if (s == OK && (doubt || lost)) report(c, out);
     return s;
 }
 

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* Tells whether a list of lights can be that of the pictures. The residual alone does not tell: with y listed downward
- * it is the same, and of gloss and shadows it is large.
+/* Checks whether a list of lights can belong to the pictures. The residual alone does not suffice: it is the same with
+ * y listed downward, and large with gloss and shadows.
  *
  *     warnings doubts = {0};
- *     status s = pst_check_lights(&capture, &surface, &doubts);      adds lights_do_not_fit, and what would fit */
+ *     status s = pst_check_lights(&capture, &surface, &doubts);      adds lights_do_not_fit, and what would fit
+ */
 #ifndef MERLIN_STEREO_DOUBTS_LIGHT_CHECK_H
 #define MERLIN_STEREO_DOUBTS_LIGHT_CHECK_H
 

@@ -9,9 +9,9 @@
 #include "stereo/capture/shrink.h"
 #include "stereo/fit/pixel_fit.h"
 
-/* Pixels that tell of the lights, up to four times as many. */
+/* Number of pixels that are used, up to four times as many. */
 enum { SMALL = 3000 };
-/* The share of full scale below which a pixel's values are noise. */
+/* Share of full scale below which a pixel's values are noise. */
 static const double dark = 0.003;
 
 void pst_light_fit_free(pst_light_fit *f)
@@ -25,7 +25,7 @@ void pst_light_fit_free(pst_light_fit *f)
 
 /* ---- the lights ---- */
 
-/* The middle of the object, in the camera's space. */
+/* Returns the middle of the object in the camera's space. */
 static vec3 middle_of(const merlin_capture *c, const merlin_surface *s)
 {
     double x = 0, y = 0, depth = 0, count = 0;
@@ -91,7 +91,8 @@ static status shrink(const merlin_capture *c, pst_light_fit *f)
     return s;
 }
 
-/* A pixel's values, mean of the channels; below 0: saturated. Returns their length, 0 off the object or in the dark. */
+/* Reads a pixel's values, the mean of the channels; below 0: saturated. Returns their length, 0 outside the object or
+ * in the dark. */
 static double values_at(const pst_light_fit *f, size_t pixel, float *value)
 {
     const merlin_capture *c = &f->small;
@@ -119,7 +120,7 @@ static status sum_products(pst_light_fit *f)
     for (size_t i = 0; i < pixels; i++) {
         double length = values_at(f, i, value);
         if (!(length > 0)) continue;
-        for (size_t j = 0; j < n; j++) /* what is saturated was that bright at least */
+        for (size_t j = 0; j < n; j++) /* a saturated value is at least that bright */
             for (size_t k = 0; k <= j; k++)
                 f->gram[j * n + k] += fabs((double)(value[j] * value[k])) / (length * length);
     }
@@ -141,7 +142,7 @@ status pst_light_fit_new(const merlin_capture *c, const merlin_surface *s, pst_l
     return result;
 }
 
-/* ---- how they go together ---- */
+/* ---- explained energy ---- */
 
 static double energy_of(const pst_light_fit *f, int without)
 {
@@ -149,7 +150,7 @@ static double energy_of(const pst_light_fit *f, int without)
     return f->energy - (without >= 0 ? f->gram[k * n + k] : 0);
 }
 
-/* Returns what unit weights of the pictures explain. */
+/* Returns the energy explained by unit weights of the pictures. */
 static double explained_by(const pst_light_fit *f, const double *along)
 {
     size_t n = (size_t)f->count;

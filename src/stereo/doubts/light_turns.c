@@ -8,21 +8,21 @@
 #include "stereo/uncalibrated/inflate.h"
 
 enum { STEP = 15, TURNS = 360 / STEP, AXES = 48, LEAST_BORDER = 30, LEAST_INSIDE = 300 };
-/* Sideways part of a normal where a surface is about to turn away; a bowl's edge seldom is as steep. */
+/* Sideways component of a normal close to an occluding contour; a bowl's edge is rarely as steep. */
 static const double steep = 0.8;
-/* Small pixels from the outline in which normals still point outward. */
+/* Distance from the outline in small pixels within which normals still point outward. */
 enum { RIM = 2 };
-/* The weight of the outline beside the logarithm of how integrable normals are. Of 25 rendered and five real captures
- * the right axes are better than any other ones by 0.3 at least. */
+/* Weight of the outline relative to the logarithm of the normals' integrability. In 25 rendered and five real captures
+ * the right axes are better than others by 0.3 at least. */
 static const double outline_weight = 1.5;
-/* The share of the surface that faces the camera under axes that can be right: rendered objects have 0.78 and more. */
+/* Share of the surface that faces the camera with axes that can be right: rendered objects have 0.78 and more. */
 static const double least_facing = 0.65, most_facing = 0.9;
 
-/* A pixel of the surface, and which way is outward there; (0, 0) inside. */
+/* A pixel of the surface, and the outward direction there; (0, 0) inside. */
 typedef struct place {
     vec3 normal, by_x, by_y;
     float out_x, out_y;
-    bool inside; /* has neighbours on all sides, and no jump between them */
+    bool inside; /* whether it has neighbours on all sides, without a jump between them */
 } place;
 
 typedef struct places {
@@ -30,9 +30,9 @@ typedef struct places {
     size_t count, border, inside;
 } places;
 
-typedef struct judgement {
+typedef struct score {
     double curl, outline, facing, hollow;
-} judgement;
+} score;
 
 static vec3 turned(const double m[9], vec3 v)
 {
@@ -95,7 +95,7 @@ static status list_places(const pst_light_fit *f, const vec3 *b, places *out)
     return OK;
 }
 
-static judgement judge(const places *all, const double m[9])
+static score score_of(const places *all, const double m[9])
 {
     double curl = 0, change = 0, outward = 0, facing = 0, hollow = 0;
     for (size_t i = 0; i < all->count; i++) {
@@ -111,13 +111,13 @@ static judgement judge(const places *all, const double m[9])
         change += sqrt((double)(vec3_dot(dx, dx) + vec3_dot(dy, dy)));
     }
     bool seen = all->border >= LEAST_BORDER, tells = all->inside >= LEAST_INSIDE && change > 0;
-    return (judgement){.curl = tells ? fmax(curl / change, 1e-3) : 1,
-                       .outline = seen ? outward / (double)all->border : 0,
-                       .hollow = seen ? hollow / (double)all->border : 0,
-                       .facing = facing / fmax((double)all->count, 1)};
+    return (score){.curl = tells ? fmax(curl / change, 1e-3) : 1,
+                   .outline = seen ? outward / (double)all->border : 0,
+                   .hollow = seen ? hollow / (double)all->border : 0,
+                   .facing = facing / fmax((double)all->count, 1)};
 }
 
-static double better(const judgement *now, const judgement *then)
+static double better(const score *now, const score *then)
 {
     return log(now->curl / then->curl) + outline_weight * (then->outline - now->outline);
 }
@@ -128,7 +128,7 @@ static void plane_turn(double degrees, bool mirrored, double m[9])
     memcpy(m, &(double[9]){c, mirrored ? s : -s, 0, s, mirrored ? -c : c, 0, 0, 0, 1}, 9 * sizeof *m);
 }
 
-/* One of the 48 ways in which three axes can be exchanged and reversed. */
+/* Computes one of the 48 ways to exchange and reverse three axes. */
 static void axes_turn(int k, double m[9])
 {
     static const int order[6][3] = {{0, 1, 2}, {1, 0, 2}, {0, 2, 1}, {2, 1, 0}, {1, 2, 0}, {2, 0, 1}};
@@ -137,22 +137,22 @@ static void axes_turn(int k, double m[9])
         m[3 * i + order[k / 8][i]] = k >> i & 1 ? -1 : 1;
 }
 
-static void try_turn(const places *all, const judgement *now, const pst_light_turn *trial, pst_light_turn *best)
+static void try_turn(const places *all, const score *now, const pst_light_turn *trial, pst_light_turn *best)
 {
-    judgement then = judge(all, trial->at);
+    score then = score_of(all, trial->at);
     double gain = trial->axes && then.facing < most_facing ? -HUGE_VAL : better(now, &then);
     if (!(gain > best->better)) return;
     *best = *trial;
     best->better = gain;
 }
 
-/* Tells whether x reversed is as good as y reversed: without an outline they differ in what is hollow alone. */
-static bool is_either(const places *all, const judgement *now)
+/* Tells whether x reversed is as good as y reversed: without an outline they differ only in what is concave. */
+static bool is_either(const places *all, const score *now)
 {
     double of_x[9], of_y[9];
     plane_turn(180, true, of_x);
     plane_turn(0, true, of_y);
-    judgement x = judge(all, of_x), y = judge(all, of_y);
+    score x = score_of(all, of_x), y = score_of(all, of_y);
     return fabs(better(now, &x) - better(now, &y)) < 0.1;
 }
 
@@ -160,7 +160,7 @@ static void search(const places *all, pst_light_turn *best)
 {
     double none[9];
     plane_turn(0, false, none);
-    judgement now = judge(all, none);
+    score now = score_of(all, none);
     *best = (pst_light_turn){.better = -HUGE_VAL};
     for (int k = 1; k < 2 * TURNS; k++) {
         int degrees = k % TURNS * STEP;

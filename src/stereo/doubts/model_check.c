@@ -9,20 +9,21 @@
 #include "stereo/capture/shrink.h"
 #include "stereo/methods/solve.h"
 
-/* Pixels that are solved again, up to four times as many; pictures; and so few explain everything. */
+/* Number of pixels that are solved again, up to four times as many; number of pictures; least number, as fewer explain
+ * everything. */
 enum { SMALL = 200, PICTURES = 16, FEWEST = 5 };
-/* A residual from which on something is looked for, and how much less of it has to be left. Measured: of real captures
- * and rendered ones with gloss and shadows nothing wrong leaves less than 0.75 of it; linear values taken for sRGB
- * leave twice as much as they need, a distance wrong by half ten times as much. */
+/* Residual from which on other models are tried, and the share of it that they must stay below. Measured: in real
+ * captures, and rendered ones with gloss and shadows, wrong models leave at least 0.75 of it; linear values taken for
+ * sRGB leave twice as much as necessary, a distance wrong by half ten times as much. */
 static const double noticed = 0.02, plainly_less = 0.6;
 
 typedef struct check {
     merlin_capture small;
     merlin_stereo_method method;
-    double own; /* what is left of the small pictures as they were taken */
+    double own; /* residual of the small pictures as they were taken */
 } check;
 
-/* ---- what is left ---- */
+/* ---- residuals ---- */
 
 static int by_value(const void *a, const void *b)
 {
@@ -30,7 +31,8 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Finds the median: outlines and cast shadows, which no model here knows, leave much in few pixels. */
+/* Computes the median residual, as outlines and cast shadows, which no model here includes, leave much in few pixels.
+ */
 static status typical_residual(const merlin_capture *c, const merlin_surface *s, double *out)
 {
     size_t pixels = (size_t)c->width * (size_t)c->height, count = 0;
@@ -44,7 +46,7 @@ static status typical_residual(const merlin_capture *c, const merlin_surface *s,
     return OK;
 }
 
-/* Solves the pictures and measures what is left: everything where they cannot be solved, which explains nothing. */
+/* Solves the pictures and measures the residual; infinite if they cannot be solved. */
 static status residual_of(const merlin_capture *c, merlin_stereo_method method, double *left)
 {
     merlin_surface found;
@@ -73,7 +75,7 @@ static status try_distance(const check *c, double at, double *best, double *fact
     return s;
 }
 
-/* Far and wide first: between there may be distances that fit worse than either. */
+/* Tries far and wide distances first: those between may fit worse than either. */
 static status check_distance(const check *c, double *best, double *factor)
 {
     *best = c->own;
@@ -140,8 +142,7 @@ static uint16_t other_tone(uint16_t code, bool linear)
     return (uint16_t)lrintf(65535 * (linear ? srgb_decode(value) : srgb_encode(value)));
 }
 
-/* Changes the pictures as if 8 bits had meant the other of the two things that they usually mean, and measures what is
- * left. */
+/* Converts the pictures as if 8 bits had the other of their two usual meanings, and measures the residual. */
 static status with_other_tones(check *c, bool linear, double *left)
 {
     for (int k = 0; k < c->small.count; k++)
@@ -150,7 +151,7 @@ static status with_other_tones(check *c, bool linear, double *left)
     return residual_of(&c->small, c->method, left);
 }
 
-/* Whoever lists lights and no strengths means equal ones. */
+/* Tells whether all lights have one strength; lists without strengths mean equal ones. */
 static bool are_of_one_strength(const merlin_capture *c)
 {
     for (int k = 1; k < c->count; k++)
@@ -159,7 +160,7 @@ static bool are_of_one_strength(const merlin_capture *c)
     return c->intensities_known;
 }
 
-static void tell_tones(bool linear, warnings *out)
+static void report_tones(bool linear, warnings *out)
 {
     warnings_add(out, "other_tones", "%s",
                  linear
@@ -169,7 +170,7 @@ static void tell_tones(bool linear, warnings *out)
                        "may be many degrees off: if what wrote them left their values linear, say so by --linear");
 }
 
-static void tell_strengths(warnings *out)
+static void report_strengths(warnings *out)
 {
     warnings_add(out, "strengths_unequal",
                  "the pictures fit these lights far better if they are of different strengths, which nothing says they "
@@ -177,7 +178,7 @@ static void tell_strengths(warnings *out)
                  "--method semi");
 }
 
-/* Either makes up for some of the other: the better one is told. */
+/* Compares tones and strengths, which partly compensate each other, and reports the better one. */
 static status check_values(check *c, const merlin_capture *of, warnings *out)
 {
     double semi = HUGE_VAL, toned = HUGE_VAL;
@@ -187,13 +188,13 @@ static status check_values(check *c, const merlin_capture *of, warnings *out)
     if (s == OK && of->bits == 8) s = with_other_tones(c, of->linear, &toned);
     if (s != OK || !is_better(c, fmin(semi, toned))) return s;
     if (toned < semi)
-        tell_tones(of->linear, out);
+        report_tones(of->linear, out);
     else
-        tell_strengths(out);
+        report_strengths(out);
     return OK;
 }
 
-/* ---- all of it ---- */
+/* ---- the whole ---- */
 
 static status check_all(check *c, const merlin_capture *of, warnings *out)
 {

@@ -10,7 +10,7 @@
 enum { MOST_PIXELS = 1 << 15 };
 static const float BRIGHT = 0.9f;
 
-/* Of pixels with all their channels: a step over values could meet the same channel every time. */
+/* Samples pixels with all their channels, as a step over values could always meet the same channel. */
 static size_t sample_values(const img *albedo, const img *mask, float *sample)
 {
     size_t channels = (size_t)albedo->channels, pixels = img_value_count(mask), inside = 0, count = 0;

@@ -3,14 +3,15 @@
 
 #include <math.h>
 
-/* Normal (two angles), albedo, gloss, sharpness; then depth. */
+/* Unknowns: normal (two angles), albedo, gloss, sharpness; then depth. */
 enum { SURFACE = 5, UNKNOWNS = SURFACE + 1 };
 
-/* Of what a residual is made of beside noise, in ordinary values: the lobe is a model. */
+/* Least standard deviation of residuals beyond noise, in ordinary values, as the lobe is only a model. */
 static const float least_residual = 0.01f;
 static const float turn = 0.01f, share = 0.01f;
 
-/* What the residuals change by if the surface turns, brightens or gets shinier, a row each: −(model' − model). */
+/* Computes the derivatives of the residuals, −(model' − model), for rotation, brightness and gloss of the surface, a
+ * row each. */
 static void change_surface(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shading *at, const float *model,
                            float rows[SURFACE][PST_MAX_LIGHTS])
 {
@@ -30,8 +31,9 @@ static void change_surface(const pst_lobe_data *d, const pst_lobe *lobe, const p
     }
 }
 
-/* m: symmetric, lower triangle; leaves Cholesky's factors without what comes after the last row's pivot. Directions
- * that nothing fixes get no say. Returns the last unknown's information once the others have followed. */
+/* Eliminates all unknowns but the last. m: symmetric, lower triangle; it then contains Cholesky's factors, except for
+ * what follows the last row's pivot. Directions that nothing determines are ignored. Returns the last unknown's
+ * information after the others have been optimized. */
 static float eliminate(float m[UNKNOWNS][UNKNOWNS], float right[UNKNOWNS])
 {
     for (int j = 0; j < SURFACE; j++) {

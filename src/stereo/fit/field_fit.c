@@ -12,23 +12,23 @@
 #include "stereo/fit/near_lights.h"
 #include "stereo/fit/pixel_fit.h"
 
-/* Pixels gathered at a time: a picture's cache lines serve them all. */
+/* Number of pixels that are gathered together, so that a picture's cache lines serve all of them. */
 enum { BLOCK = 32 };
 
-typedef enum field_task { FIT, REFINE, SEARCH, SECOND, FORETELL, SPREAD, MEND, MODEL, FALL_OFF, STORE } field_task;
+typedef enum field_task { FIT, REFINE, SEARCH, SECOND, PREDICT, SPREAD, MEND, MODEL, FALL_OFF, STORE } field_task;
 
 typedef struct fit_job {
     const pst_field *field;
     field_task task;
-    pst_around around;     /* spread, mend */
-    float limit;           /* search */
-    float contradiction;   /* mend: what it costs to differ from all neighbours */
-    pst_shading *next;     /* spread, mend: to take the place of the field's */
-    float *weight, *model; /* model: padded lights a pixel */
-    pst_fall_off *fall;    /* fall off */
-    merlin_surface *out;   /* store */
-    float *x, *y, *z;      /* distant lights, padded */
-    float *cost;           /* a pixel */
+    pst_around around;     /* for spread and mend */
+    float limit;           /* for search */
+    float contradiction;   /* for mend: cost of differing from all neighbours */
+    pst_shading *next;     /* for spread and mend: results that will replace the field's */
+    float *weight, *model; /* for model: padded lights per pixel */
+    pst_fall_off *fall;    /* for fall-off */
+    merlin_surface *out;   /* for store */
+    float *x, *y, *z;      /* directions of distant lights, padded */
+    float *cost;           /* cost of each pixel */
     double total;
 } fit_job;
 
@@ -38,10 +38,10 @@ typedef struct run_start {
 } run_start;
 
 typedef struct gathered {
-    float value[BLOCK * PST_MAX_LIGHTS], usable[BLOCK * PST_MAX_LIGHTS]; /* pst_padded(pictures) a pixel */
+    float value[BLOCK * PST_MAX_LIGHTS], usable[BLOCK * PST_MAX_LIGHTS]; /* pst_padded(pictures) per pixel */
 } gathered;
 
-/* channels is a constant where this is called. */
+/* Gathers a picture's values; channels is a constant in each call, so that the loop is vectorized. */
 ALWAYS_INLINE void gather_picture(const pst_problem *p, int k, const uint32_t *pixel, size_t count, int channels,
                                   float *restrict value, float *restrict usable, size_t stride)
 {
@@ -82,7 +82,7 @@ static const pst_lobe *lobe_of(const pst_field *f, const pst_shading *q)
     return q->second ? f->second : f->lobe;
 }
 
-/* Albedo a channel by the same weights, and the residual beside the fit. power NULL: distant. */
+/* Stores the albedo of each channel by the same weights, and the residual. power NULL: distant lights. */
 static void store_pixel(const fit_job *job, size_t at, const pst_lobe_data *d, const pst_shading *q, const float *power)
 {
     const pst_problem *p = job->field->problem;
@@ -111,9 +111,9 @@ static void store_pixel(const fit_job *job, size_t at, const pst_lobe_data *d, c
     out->residual.data[at] = fit > 0 ? sqrtf(residual / fit) : 0;
 }
 
-/* The pixel before is close to this one, as a rule: what it has is tried first, and serves if it costs no more than
- * where a run of pixels began. Not with few lights: a wrong surface costs no more then, and would be dragged along the
- * row. */
+/* Fits a pixel starting from the previous one, which is usually adjacent: its result is tried first, and accepted if it
+ * costs no more than at the start of a run of pixels. Not with few lights, where a wrong surface costs no more and
+ * would be copied along the row. */
 static pst_shading fit_after(const fit_job *job, size_t i, const pst_lobe_data *d, run_start *begun)
 {
     const pst_field *f = job->field;
@@ -146,7 +146,8 @@ static void try_neighbours(const fit_job *job, size_t i, const pst_lobe_data *d)
     }
 }
 
-/* Detail as small as a pixel costs much less than what its neighbours have, and stays. */
+/* Replaces a pixel's result by its neighbours'. Detail of one pixel's size costs much less than the neighbours'
+ * surface, and stays. */
 static void mend(const fit_job *job, size_t i, const pst_lobe_data *d)
 {
     const pst_shading *own = &job->field->shading[i];
@@ -157,7 +158,7 @@ static void mend(const fit_job *job, size_t i, const pst_lobe_data *d)
     if (trial.cost < own->cost + job->contradiction * less_strange) job->next[i] = trial;
 }
 
-/* power NULL: distant. */
+/* Fits the lobe; power NULL: distant lights. */
 static void fit_lobe(const fit_job *job, size_t i, const pst_lobe_data *d, const float *power, run_start *begun)
 {
     const pst_field *f = job->field;
@@ -191,8 +192,8 @@ static void fit_lobe(const fit_job *job, size_t i, const pst_lobe_data *d, const
     job->cost[i] = own->cost;
 }
 
-/* Under near lights or from a near camera: where the pixel sees them. Returns the direction to the camera. */
-static vec3 look_from(const pst_field *f, size_t at, pst_near_lights *lights, float *value, float *usable)
+/* Computes near lights, or a near camera's direction, for a pixel's position. Returns the direction to the camera. */
+static vec3 observe_from(const pst_field *f, size_t at, pst_near_lights *lights, float *value, float *usable)
 {
     const merlin_capture *c = f->problem->capture;
     int x = (int)(at % (size_t)c->width), y = (int)(at / (size_t)c->width), padded = pst_padded(c->count);
@@ -225,10 +226,10 @@ static pst_fall_off fall_off(const pst_field *f, size_t i, const pst_lobe_data *
     return pst_fall_off_of(d, &deeper, kind, &f->shading[i]);
 }
 
-/* The effort of a fit from nothing, counted in fits that begin from a neighbour's. */
+/* Effort of a fit without a start, in units of fits that start from a neighbour. */
 enum { FIT_EFFORT = 4 };
 
-/* Whether the task has anything to do there. */
+/* Tells whether the task has anything to do at a pixel. */
 static bool concerns(const fit_job *job, size_t i)
 {
     const pst_shading *start[4];
@@ -242,7 +243,7 @@ static void fit_pixel(const fit_job *job, size_t i, float *value, float *usable,
 {
     const pst_field *f = job->field;
     pst_near_lights lights;
-    vec3 view = look_from(f, f->pixel[i], &lights, value, usable);
+    vec3 view = observe_from(f, f->pixel[i], &lights, value, usable);
     pst_observations o = {pst_padded(f->problem->capture->count), job->x, job->y, job->z, value, usable, 0};
     if (f->depth) {
         o.x = lights.x;
@@ -254,8 +255,8 @@ static void fit_pixel(const fit_job *job, size_t i, float *value, float *usable,
         pst_pixel p = pst_pixel_fit(&o, weight);
         job->cost[i] = p.cost;
         if (f->b) f->b[i] = p.b;
-    } else if (job->task == FORETELL) {
-        job->cost[i] = pst_lobe_foretell(&o, view, f->lobe);
+    } else if (job->task == PREDICT) {
+        job->cost[i] = pst_lobe_predict(&o, view, f->lobe);
     } else {
         pst_lobe_data d;
         pst_lobe_prepare(&o, view, f->lobe->shadow, &d);
@@ -344,9 +345,9 @@ status pst_field_try_second(const pst_field *f)
     return f->second ? run(&(fit_job){.field = f, .task = SECOND}) : OK;
 }
 
-status pst_field_foretell(const pst_field *f, double *cost)
+status pst_field_predict(const pst_field *f, double *cost)
 {
-    fit_job job = {.field = f, .task = FORETELL};
+    fit_job job = {.field = f, .task = PREDICT};
     status s = run(&job);
     *cost = job.total;
     return s;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "stereo/fit/field_neighbours.h"
 
-/* Of a majority's member and of what it is against, beside the member's. Across a crease half of the neighbours are
- * strange to each other, and nobody is right. What the vote is worth is in docs/notes/real_captures.md. */
+/* Largest strangeness of a majority's member, and how much stranger the pixel must be. Across a crease half of the
+ * neighbours differ from each other, and none is wrong. docs/notes/real_captures.md states the effect. */
 static const float most_strange = 0.4f, much_stranger = 0.2f;
 
 /* 1 - cos 20 degrees */
@@ -10,11 +10,12 @@ static const float strange = 0.0603f;
 
 static bool alike(const pst_shading *a, const pst_shading *b)
 {
-    static const float cosine = 0.9994f; /* of 2 degrees */
+    static const float cosine = 0.9994f; /* cosine of 2 degrees */
     return vec3_dot(a->normal, b->normal) >= cosine;
 }
 
-/* Places in the field of the first so many pixels around, those beside first, and how many of them are in it. */
+/* Lists the indices in the field of the first `most` pixels around, adjacent ones first, and returns how many are in
+ * it. */
 static int list_around(const pst_around *a, size_t i, int most, int32_t place[8])
 {
     static const int step[8][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}};

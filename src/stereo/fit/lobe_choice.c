@@ -5,46 +5,46 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A choice that explains less than this share of the loss is taken for a chance of the sample. */
+/* Shares of the loss that a choice must explain; smaller ones count as chance. */
 static const double worth_kind = 0.02, worth_view = 0.05, worth_terminator = 0.1;
 
-/* What is tried first: nearer than 0 to all that occur. */
+/* The terminator that is tried first, closer than 0 to all usual ones. */
 static const float likely_terminator = 0.07f;
 
-/* Of the loss: a second kind that saves less is not taken along. */
+/* Share of the loss that a second lobe must save. */
 static const double worth_second = 0.1;
 
-/* Of what is foretold: a lobe, or another width, that gains less is taken for a chance. */
+/* Shares of the prediction error that a lobe, or another width, must save; smaller ones count as chance. */
 static const double worth_freedom = 0.03, worth_width = 0.015;
 
-/* Of what is foretold: a rough matte surface gains 6 percent by a terminator that it does not have, a raised black
- * level 70 by its own. */
+/* The same for a terminator: a rough matte surface saves 6 percent with one that it does not have, a raised black level
+ * 70 with its own. */
 static const double worth_dark = 0.3;
 
-/* With fewer lights τ and the lobe's kind would be read from the shadows. */
+/* Least number of lights: with fewer τ and the lobe's kind would be fitted to the shadows. */
 enum { FEWEST_LIGHTS = 12 };
 
-/* With fewer a quarter cannot be held out. */
-enum { FORETELLING_LIGHTS = 8 };
+/* Least number of lights for cross-validation, as a quarter is held out. */
+enum { PREDICTING_LIGHTS = 8 };
 
 typedef struct kind {
     float masking;
     int tail;
 } kind;
 
-/* The first is the plain choice; those that are not like another start from nothing. */
+/* Kinds to try, the plain choice first; those that differ from the others are fitted without a start. */
 static const kind kinds[] = {{0.28f, 2}, {1, 8}, {1, 2}, {1, 4}, {0.28f, 8}};
 enum { UNLIKE = 2, KINDS = sizeof kinds / sizeof *kinds };
 
 typedef struct choice {
-    pst_field field; /* lobe: what is tried */
+    pst_field field; /* lobe: the one that is tried */
     pst_lobe best, trial;
-    pst_shading *kept; /* of the best */
+    pst_shading *kept; /* shading of the best one */
     double cost;
     status status;
 } choice;
 
-/* Keeps the trial if it saves more than a share of the cost. anew: from the observations alone. */
+/* Tries a lobe, and keeps it if it saves more than a share of the cost. anew: fit without a start. */
 static void attempt(choice *c, double worth, bool anew)
 {
     size_t bytes = c->field.count * sizeof *c->kept;
@@ -53,7 +53,7 @@ static void attempt(choice *c, double worth, bool anew)
     for (size_t i = 0; i < c->field.count; i++)
         c->field.shading[i] = pst_lobe_translate(&c->best, &c->trial, &c->kept[i]);
     c->status = anew ? pst_field_fit(&c->field, &cost) : pst_field_refine(&c->field, &cost);
-    if (c->status != OK || !(cost < c->cost * (1 - worth))) return; /* nor is a cost that is no number less */
+    if (c->status != OK || !(cost < c->cost * (1 - worth))) return; /* a cost that is NaN is not lower either */
     c->cost = cost;
     c->best = c->trial;
     memcpy(c->kept, c->field.shading, bytes);
@@ -71,7 +71,7 @@ static void try_kinds(choice *c, int count, bool anew)
 
 static void try_views(choice *c)
 {
-    static const float fov[] = {20, 40, 60}; /* degrees across */
+    static const float fov[] = {20, 40, 60}; /* fields of view in degrees */
     const merlin_capture *capture = c->field.problem->capture;
     for (size_t k = 0; k < sizeof fov / sizeof *fov; k++) {
         c->trial = c->best;
@@ -80,7 +80,8 @@ static void try_views(choice *c)
     }
 }
 
-/* Fitted anew with lobes of both kinds: those that stand in for a terminator do not give way to it step by step. */
+/* Tries a terminator with new fits of lobes of both kinds, as lobes that stand in for a terminator do not give way to
+ * it gradually. */
 static void try_terminator(choice *c)
 {
     for (int k = 0; k < (c->best.tail > 0 ? UNLIKE : 1); k++) {
@@ -94,7 +95,7 @@ static void try_terminator(choice *c)
     }
 }
 
-/* In steps as long as they help. */
+/* Moves the terminator in steps while they help. */
 static void move_terminator(choice *c, float step)
 {
     float from;
@@ -117,7 +118,7 @@ static void refine_terminator(choice *c)
 
 status pst_lobe_admit(const pst_field *sample, pst_lobe *lobe)
 {
-    /* where many are inliers a shadow may cost more: a rough surface's dark side is not one */
+    /* where many observations are inliers a shadow may cost more, as a rough surface's dark side is not one */
     static const pst_lobe few[] = {{.masking = 1, .width = 0.16f, .shadow = 0.5f},
                                    {.masking = 1, .width = 0.32f, .shadow = 0.5f},
                                    {.masking = 1, .width = 0.08f, .shadow = PST_SHADOW_COST},
@@ -129,10 +130,10 @@ status pst_lobe_admit(const pst_field *sample, pst_lobe *lobe)
     *lobe = few[0];
     status s = OK;
     double best = HUGE_VAL, cost;
-    for (size_t k = 0; s == OK && count >= FORETELLING_LIGHTS && k < sizeof few / sizeof *few; k++) {
+    for (size_t k = 0; s == OK && count >= PREDICTING_LIGHTS && k < sizeof few / sizeof *few; k++) {
         pst_field f = *sample;
         f.lobe = &few[k];
-        s = pst_field_foretell(&f, &cost);
+        s = pst_field_predict(&f, &cost);
         if (s != OK || cost >= best * (1 - (few[k].tail > 0 ? worth_freedom : worth_width))) continue;
         best = cost;
         *lobe = few[k];
@@ -160,8 +161,8 @@ static void choose(choice *c)
     if (glossy) try_kinds(c, KINDS, false);
 }
 
-/* With few lights, what was chosen must foretell better than the admitted lobe, too: much better with a terminator,
- * which rough surfaces feign. */
+/* Checks the choice with few lights, where it must also predict better than the admitted lobe: much better with a
+ * terminator, which rough surfaces imitate. */
 static status confirm(const pst_field *sample, const pst_lobe *chosen, pst_lobe *lobe)
 {
     double with = 0, without = 0, share = chosen->terminator > 0 ? 1 - worth_dark : 1;
@@ -169,9 +170,9 @@ static status confirm(const pst_field *sample, const pst_lobe *chosen, pst_lobe 
     status s = OK;
     if (sample->problem->capture->count < PST_MANY_LIGHTS) {
         f.lobe = lobe;
-        s = pst_field_foretell(&f, &without);
+        s = pst_field_predict(&f, &without);
         f.lobe = chosen;
-        if (s == OK) s = pst_field_foretell(&f, &with);
+        if (s == OK) s = pst_field_predict(&f, &with);
     }
     if (s == OK && with <= share * without) *lobe = *chosen;
     return s;
@@ -191,7 +192,7 @@ status pst_lobe_choose(const pst_field *sample, pst_lobe *lobe)
     return c.status == OK ? confirm(sample, &c.best, lobe) : c.status;
 }
 
-/* What the trial saves where it costs far less. */
+/* Returns the cost that the trial saves at pixels where it costs far less. */
 static double saved(const pst_shading *with, const pst_shading *without, size_t count)
 {
     double sum = 0;
@@ -200,7 +201,7 @@ static double saved(const pst_shading *with, const pst_shading *without, size_t 
     return sum;
 }
 
-/* first: room for the shading by either lobe. */
+/* Finds the second lobe that saves most; first: room for the shading by either lobe. */
 static status save_most(const pst_field *sample, const pst_lobe *lobe, pst_shading *first, pst_lobe *second,
                         bool *worth)
 {

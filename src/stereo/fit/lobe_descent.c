@@ -9,21 +9,21 @@
 
 enum { UNKNOWNS = 5, PRODUCTS = UNKNOWNS * (UNKNOWNS + 1) / 2 };
 
-/* Where a lobe's own width is wider, the narrowing ends there. */
+/* Successive widths of the loss. For a lobe with a larger width of its own the narrowing ends there. */
 static const float widths[] = {PST_WIDEST, PST_WIDEST, 0.11f, 0.08f, 0.057f, 0.04f, 0.04f, 0.04f, 0.04f, 0.04f, 0.04f};
 enum { STEPS = sizeof widths / sizeof *widths, FAR = 0, NEAR = 3 };
 
-/* A step is hopeless if the loss will stay above the limit even where each step left gains so many times what it did;
- * after as many such steps the descent is given up. */
+/* Factor of a hopeless step: if the loss would stay above the limit even if each remaining step gained this many times
+ * what the last one did. After as many such steps the descent ends. */
 static const float hopeful = 2;
 enum { MOST_HOPELESS = 2 };
 
-/* The model at every light, linearized: what it changes by with each unknown, what is left of the observation, and the
- * weight that the loss gives it. */
+/* The linearized model at every light: its derivative by each unknown, the residual of the observation, and its weight
+ * by the loss. */
 typedef struct linearized {
     float slope[UNKNOWNS][PST_LIGHTS_ROOM], residual[PST_LIGHTS_ROOM], weight[PST_LIGHTS_ROOM];
-    float loss, loss_before; /* at the width of the weights; at the width before */
-    vec3 t1, t2;             /* the directions that the first two unknowns turn the normal to */
+    float loss, loss_before; /* loss at the width of the weights, and at the previous width */
+    vec3 t1, t2;             /* directions in which the first two unknowns turn the normal */
 } linearized;
 
 /* Normal equations of the weighted, linearized problem; upper triangle by rows. */
@@ -47,7 +47,7 @@ static void find_slopes(const pst_lobe_data *d, const pst_lobe *lobe, const pst_
         float x = 1 - nh * nh, lit = nl > 0 ? nl : 0;
         x = x > 0 ? x : 0;
         float bent = 1 - tail.bend * x, wide = bent + u * x, mask = lit * (1 - k) + k + 1e-6f;
-        float both = 1 / (wide * mask), inverse = both * mask, below = both * wide; /* one division for two */
+        float both = 1 / (wide * mask), inverse = both * mask, below = both * wide; /* one division for both */
         float base = bent * inverse, pm = power_below(&tail, base);
         float g = lit * below, by_g = (nl > 0 ? k : 0) * below * below, p = pm * base, gp = g * p;
         float by_nl = (nl > tau ? a : 0) + s * by_g * p, by_nh = 2 * gamma * u * s * g * pm * inverse * inverse * nh;
@@ -59,7 +59,7 @@ static void find_slopes(const pst_lobe_data *d, const pst_lobe *lobe, const pst_
     }
 }
 
-/* The model is linear in albedo and gloss: their slopes make it. */
+/* Computes residuals and weights. The model is linear in albedo and gloss, so that their derivatives yield it. */
 static void find_weights(const pst_lobe_data *d, const pst_shading *at, float width, float width_before,
                          linearized *out)
 {
@@ -87,7 +87,7 @@ static void linearize(const pst_lobe_data *d, const pst_lobe *lobe, const pst_sh
     find_weights(d, at, width, width_before, out);
 }
 
-/* Of the unknowns that turn the normal; in two parts, as many sums as there are registers. */
+/* Sums the terms of the unknowns that turn the normal, in two parts because of the number of registers. */
 static void add_up_turns(const linearized *at, int count, equations *e)
 {
     const float *j0 = at->slope[0], *j1 = at->slope[1], *j2 = at->slope[2], *j3 = at->slope[3], *j4 = at->slope[4],
@@ -136,7 +136,7 @@ static void add_up(const linearized *at, int padded, equations *e)
     add_up_heights(at, pst_whole(padded), e);
 }
 
-/* (M + damping diag M) x = right by factors L D Lᵀ; a direction that nothing fixes stays 0. */
+/* Solves (M + damping diag M) x = right by factors L D Lᵀ; a direction that nothing determines stays 0. */
 static void solve5(const equations *e, float damping, float x[UNKNOWNS])
 {
     static const int row[UNKNOWNS] = {0, 4, 7, 9, 10}; /* m[row[i] + j] is entry (i, j), j >= i */
@@ -183,15 +183,15 @@ static pst_shading moved(const pst_shading *at, const equations *e, float dampin
     return next;
 }
 
-/* Nothing to gain from another step of the same width. */
+/* Tells whether another step of the same width would gain nothing. */
 static bool settled(const pst_shading *before, const pst_shading *after, float loss_after)
 {
     vec3 turn = vec3_sub(after->normal, before->normal);
     return vec3_dot(turn, turn) < 1.6e-7f && loss_after > 0.99f * before->cost - 1e-3f;
 }
 
-/* Damped steps of ever smaller width; the damping grows where a step does not help. A step is judged at its own width
- * by what is needed for the next one anyway. */
+/* Makes damped steps of decreasing width; the damping grows if a step does not help. A step is evaluated at its own
+ * width from what the next one needs anyway. */
 pst_shading pst_lobe_descend(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shading *start, pst_descent from,
                              float limit)
 {
@@ -200,7 +200,7 @@ pst_shading pst_lobe_descend(const pst_lobe_data *d, const pst_lobe *lobe, const
     const float narrowest = fmaxf(widths[STEPS - 1], lobe->width);
     float width = fmaxf(widths[first], lobe->width), damping = far ? 1e-2f : 1e-3f;
     int failures = 0, hopeless = 0;
-    bool known = false; /* the equations there */
+    bool known = false; /* whether the equations at this place are known */
     pst_shading at = *start;
     linearized here;
     equations e;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* A residual counts relative to the pixel's ordinary brightness or, for what is brighter, to the value itself: a lobe's
- * model is right to a share of its height, and a highlight's flank fixes the normal all the same. */
+/* A residual counts relative to the pixel's ordinary brightness or, for brighter values, to the value itself: the
+ * lobe's model is accurate to a share of its height, and a highlight's flank still determines the normal. */
 #include "stereo/fit/lobe_fit.h"
 
 #include <math.h>
@@ -10,16 +10,16 @@
 #include "stereo/fit/lobe_descent.h"
 #include "stereo/fit/lobe_model.h"
 
-/* Parts that the observations are held out in. */
+/* Number of parts for cross-validation. */
 enum { PARTS = 4 };
 
 static const float trial_sharpness[] = {0.7f, 2.2f, 3.7f, 5.2f, 6.7f, 8.5f};
 enum { TRIALS = sizeof trial_sharpness / sizeof *trial_sharpness };
 
-/* Values below a hundredth of the brightest are the dark ones. */
+/* Share of the brightest value below which values count as dark. */
 static const float dark = 0.01f;
 
-/* The median of what is not dark, to 4 percent: the interval is halved in logarithms. */
+/* Computes the median of the values that are not dark, within 4 percent, by bisection in logarithms. */
 float pst_ordinary_level(const pst_observations *o)
 {
     const float *value = o->value, *usable = o->usable;
@@ -63,7 +63,7 @@ void pst_lobe_prepare(const pst_observations *o, vec3 view, float shadow, pst_lo
     }
 }
 
-/* (1 + u x)^−γ falls by γ u at the lobe's top. */
+/* Matches the curvature γ u of (1 + u x)^−γ at the lobe's top. */
 pst_shading pst_lobe_translate(const pst_lobe *from, const pst_lobe *to, const pst_shading *at)
 {
     pst_shading start = *at;
@@ -77,7 +77,7 @@ pst_shading pst_lobe_refine(const pst_lobe_data *d, const pst_lobe *lobe, const 
     return pst_lobe_descend(d, lobe, start, PST_DESCENT_NEAR, limit);
 }
 
-/* What albedo and gloss are multiplied with at every light. */
+/* Factors of albedo and gloss at every light. */
 typedef struct heights {
     float diffuse[PST_LIGHTS_ROOM], lobe[PST_LIGHTS_ROOM];
 } heights;
@@ -110,7 +110,7 @@ static float loss(const pst_lobe_data *d, const heights *h, const pst_shading *a
     return cost;
 }
 
-/* Albedo and gloss for a given normal and sharpness, by weights of those before; both stay above 0. */
+/* Fits albedo and gloss for a given normal and sharpness, with weights by their previous values; both stay above 0. */
 static void scale_heights(const pst_lobe_data *d, const heights *h, float width, pst_shading *at)
 {
     const float *value = d->seen.value;
@@ -138,7 +138,7 @@ static void scale_heights(const pst_lobe_data *d, const heights *h, float width,
     }
 }
 
-/* The sharpness that goes best with a start's normal. */
+/* Finds the best sharpness for a start's normal. */
 static pst_shading best_sharpness(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shading *start)
 {
     heights h;
@@ -151,7 +151,7 @@ static pst_shading best_sharpness(const pst_lobe_data *d, const pst_lobe *lobe, 
         trial.sharpness = trial_sharpness[k];
         trial.gloss = 0;
         find_heights(d, lobe, &trial, &h);
-        if (k == 0) best.cost = loss(d, &h, &best, PST_WIDEST); /* without gloss any lobe will do */
+        if (k == 0) best.cost = loss(d, &h, &best, PST_WIDEST); /* without gloss any lobe is equally good */
         scale_heights(d, &h, PST_WIDEST, &trial);
         scale_heights(d, &h, PST_WIDEST, &trial);
         trial.cost = loss(d, &h, &trial, PST_WIDEST);
@@ -160,7 +160,7 @@ static pst_shading best_sharpness(const pst_lobe_data *d, const pst_lobe *lobe, 
     return best;
 }
 
-/* The normal half way to the brightest lights: what a mirror there would have. */
+/* Returns the normal half way to the brightest lights, that of a mirror there. */
 static vec3 mirror_normal(const pst_lobe_data *d)
 {
     const pst_observations *o = &d->seen;
@@ -169,7 +169,7 @@ static vec3 mirror_normal(const pst_lobe_data *d)
         top = o->value[i] > top ? o->value[i] : top;
     vec3 sum = {0, 0, 0};
     for (int i = 0; i < o->padded; i++) {
-        float v = o->value[i]; /* the saturated too */
+        float v = o->value[i]; /* saturated values, too */
         if (v > 0.5f * top) sum = vec3_fma(sum, v * v, vec3_make(d->hx[i], d->hy[i], d->hz[i]));
     }
     return pst_facing(sum);
@@ -229,7 +229,7 @@ void pst_lobe_weigh(const pst_lobe_data *d, const pst_lobe *lobe, const pst_shad
     }
 }
 
-float pst_lobe_foretell(const pst_observations *o, vec3 view, const pst_lobe *lobe)
+float pst_lobe_predict(const pst_observations *o, vec3 view, const pst_lobe *lobe)
 {
     float usable[PST_MAX_LIGHTS], weight[PST_MAX_LIGHTS], model[PST_MAX_LIGHTS] = {0}, off = 0;
     pst_lobe_data all, some;

@@ -30,7 +30,9 @@ void pst_near_lights_divide(const pst_near_lights *l, int padded, float *value, 
     for (int k = 0; k < padded; k++)
         most = l->power[k] > most ? l->power[k] : most;
     for (int k = 0; k < padded; k++) {
-        bool lit = l->power[k] > 1e-4f * most; /* less is the lobe's dark side: nothing but noise, enlarged */
+        bool lit =
+            l->power[k] >
+            1e-4f * most; /* less is on the dark side of the LED's lobe, where the division would only amplify noise */
         value[k] = lit ? value[k] / l->power[k] : 0;
         usable[k] = lit ? usable[k] : 0;
     }

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* Robust regression of Lambert's law on one pixel: iteratively reweighted least squares under the redescending loss of
- * Geman & McClure (1987), its scale narrowed step by step (graduated non-convexity, Blake & Zisserman 1987), started
- * from the observations between two ranks of brightness (position thresholding: highlights are the brightest, shadows
- * the darkest), the best of several starts kept. Observations that the fit turns away from the light do not vote, but a
- * bright one among them costs. */
+/* Robust regression of Lambert's law for one pixel: iteratively reweighted least squares under the redescending loss of
+ * Geman & McClure (1987), with a scale that narrows step by step (graduated non-convexity, Blake & Zisserman 1987),
+ * started from the observations between two ranks of brightness (position thresholding: highlights are the brightest,
+ * shadows the darkest); the best of several starts is kept. Observations for which the fit faces away from the light do
+ * not influence it, but a bright one among them adds to the cost. */
 #include "stereo/fit/pixel_fit.h"
 #include "base/number.h"
 
@@ -14,15 +14,16 @@
 
 enum { STEPS = 6, POLISH = 4 };
 
-/* Residuals in units of the pixel's own albedo: from 0.45, where half the object is an inlier, down to 0.05, which
- * keeps the foot of a highlight out. */
+/* Widths in units of the pixel's own albedo: from 0.45, where half the object is an inlier, down to 0.05, which
+ * excludes the foot of a highlight. */
 static const float widest = 0.45f, narrowest = 0.05f, narrowing = 0.6444f; /* (0.05 / 0.45)^(1/5) */
 
-/* Ranks of the starts' darkest and brightest observations: many shadows and highlights, few shadows, few of either. */
+/* Ranks of each start's darkest and brightest observations: for many shadows and highlights, few shadows, few of
+ * either. */
 static const float window[][2] = {{0.2f, 0.6f}, {0.3f, 0.8f}, {0.1f, 0.95f}, {0.7f, 0.97f}};
 enum { STARTS = sizeof window / sizeof *window };
 
-/* albedo · (n·l − τ) = b · (l − τ n): linear in b for the last n. */
+/* Fits albedo · (n·l − τ) = b · (l − τ n), which is linear in b for the last n. */
 static vec3 weighted_fit(const pst_observations *o, vec3 last, const float *restrict w)
 {
     const float *lx = o->x, *ly = o->y, *lz = o->z, *value = o->value;
@@ -44,7 +45,7 @@ static vec3 weighted_fit(const pst_observations *o, vec3 last, const float *rest
     return pst_solve3((float[6]){xx, xy, xz, yy, yz, zz}, vec3_make(bx, by, bz));
 }
 
-/* 1 / σ² */
+/* Returns 1 / σ². */
 static float precision_of(vec3 b, float width)
 {
     float sigma = width * vec3_length(b);
@@ -106,7 +107,7 @@ pst_pixel pst_pixel_fit(const pst_observations *o, float *weight)
     for (int s = 0; s < STARTS; s++) {
         float last = (float)(n - 1);
         pst_pixel p = fit_from(o, sorted[(int)(window[s][0] * last)], sorted[(int)(window[s][1] * last + 0.5f)], w);
-        /* a fit that vanishes explains darkness alone; any other is better */
+        /* a fit of zero explains only darkness; any other is better */
         if (vec3_dot(p.b, p.b) < 1e-20f) p.cost = (float)o->padded;
         if (p.cost >= best.cost) continue;
         best = p;

@@ -5,8 +5,8 @@
 
 #include "stereo/algebra/dense.h"
 
-/* A light list flatter than this (its smallest singular value against its largest) leaves the normal's component out of
- * its plane to the noise. */
+/* Least ratio of a light list's smallest singular value to its largest: in a flatter one noise determines the normal's
+ * component out of its plane. */
 static const float flattest_lights = 0.01f;
 
 static void add_square(vec3 v, const double about[3], double m[9])
@@ -30,7 +30,7 @@ status pst_check_directions(const merlin_light *light, int count)
     return OK;
 }
 
-/* Refuses lights on one line: from any point their directions lie in a plane, too. */
+/* Fails for lights on one line: from any point their directions are in one plane. */
 status pst_check_positions(const merlin_light *light, int count)
 {
     double m[9] = {0}, eigenvalue[6], mean[3] = {0};

@@ -10,13 +10,13 @@
 #include "stereo/fit/lobe_fit.h"
 #include "stereo/fit/pixel_fit.h"
 
-/* Fewer lit pixels than this do not span the lights; the shadowed are then taken too. */
+/* Least number of lit pixels that span the lights; with fewer the shadowed ones are used, too. */
 enum { ENOUGH = 24 };
-/* In a pixel's ordinary brightness: below is a shadow, above a highlight, which counts as this much. */
+/* Limits relative to a pixel's ordinary brightness: below is a shadow, above a highlight, which counts as this much. */
 static const float dark = 0.05f, bright = 1.2f;
-/* The second of the lights' eigenvalues as a share of the first: of planes to 0.0004, and below 8-bit steps certainly;
- * of what is not flat 0.01 and more. Between the two noise decides: planes have up to 9 of the fourth, shallow reliefs
- * 20 and more. */
+/* Limits of the lights' second eigenvalue as a share of the first: planes have up to 0.0004, and are certain below
+ * 8-bit steps; surfaces that are not flat have 0.01 and more. Between the two the ratio to the fourth eigenvalue,
+ * noise, decides: planes have up to 9, shallow reliefs 20 and more. */
 static const double flat = 1e-3, flattest = 1e-5, above_noise = 15;
 static const double above_rounding = 1e-9;
 
@@ -60,7 +60,7 @@ static bool is_lit(const pst_samples *m, size_t i, float level)
     return level > 0;
 }
 
-/* Pixels count alike whatever their albedo, and highlights no more than a bright diffuse value. */
+/* Adds a pixel. Pixels have equal weight whatever their albedo, and highlights no more than a bright diffuse value. */
 static void add_pixel(const pst_samples *m, size_t i, float level, double *gram)
 {
     size_t n = (size_t)m->lights;
@@ -70,7 +70,8 @@ static void add_pixel(const pst_samples *m, size_t i, float level, double *gram)
             gram[j * n + k] += (double)fminf(v[j] / level, bright) * (double)fminf(v[k] / level, bright);
 }
 
-/* Of the lights, summed over the pixels that all of them light, of which *lit are there; over all if they are few. */
+/* Computes the lights' gram matrix, summed over the pixels that all lights reach, *lit of them; over all pixels if
+ * these are few. */
 static void fill_gram(const pst_samples *m, double *gram, size_t *lit)
 {
     *lit = 0;

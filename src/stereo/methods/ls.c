@@ -27,9 +27,9 @@ typedef struct ls_job {
 } ls_job;
 
 /* What a block's sums say, a component after the other, so that pixels go through vector registers together. */
-typedef struct answers {
+typedef struct solutions {
     float normal[3][LS_BLOCK], albedo[3][LS_BLOCK], residual[LS_BLOCK];
-} answers;
+} solutions;
 
 /* pst_facing without a branch, and of any length; how steep the steepest is does not matter to a half, which spares a
  * root. */
@@ -56,7 +56,7 @@ static inline vec3 right_side(const ls_sums *s, int channel, int i)
 /* The channels share the normal, not the albedo: each weighs by its own albedo, which is one step of the power
  * iteration for the best rank-one fit to all channels. Channels that a grey picture lacks are zero and change nothing.
  */
-static void answer(const ls_sums *restrict s, int count, float per_unit, answers *restrict out)
+static void solve_lanes(const ls_sums *restrict s, int count, float per_unit, solutions *restrict out)
 {
 #pragma omp simd
     for (int i = 0; i < count; i++) {
@@ -120,7 +120,7 @@ static void store_values(const float *restrict from, int count, const float *res
         to[i] = inside(mask[i], from[i]);
 }
 
-static void store(const answers *a, int count, const float *mask, const merlin_surface *out, size_t first)
+static void store(const solutions *a, int count, const float *mask, const merlin_surface *out, size_t first)
 {
     float *albedo = out->albedo.data + (size_t)out->albedo.channels * first;
     store_triples(a->normal, count, mask, out->normal.data + 3 * first);
@@ -140,9 +140,9 @@ static void solve_block(const ls_job *job, size_t first, int count)
         any |= mask[i] > 0.5f;
     if (!any) return;
     ls_sums sums;
-    answers found;
+    solutions found;
     ls_sums_add(job->lights, first, count, &sums);
-    answer(&sums, count, job->per_unit, &found);
+    solve_lanes(&sums, count, job->per_unit, &found);
     store(&found, count, mask, job->out, first);
 }
 

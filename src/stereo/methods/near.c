@@ -98,7 +98,7 @@ static status best_scale(near_job *job, float ratio, int steps, bool anew, float
 }
 
 /* Whether the pictures are explained as well from nearer or further away: then how far the object is was a guess. */
-static status doubt_distance(const near_job *job, bool *unsure)
+static status check_distance(const near_job *job, bool *unsure)
 {
     double here, nearer, further;
     status s = cost_at(job, 1, true, &here);
@@ -254,7 +254,7 @@ static status find_depth(near_job *job)
     rescale(job, scale);
     if (s == OK) s = iterate(job);
     bool unsure = false;
-    if (s == OK) s = doubt_distance(job, &unsure);
+    if (s == OK) s = check_distance(job, &unsure);
     job->out->distance_unsure = unsure && !(distance > 0);
     if (!unsure) job->held_at = 0;
     /* steps in depth are let in once parts have found their places */

@@ -165,7 +165,7 @@ static status search_new(const merlin_capture *c, const vec3 *about, const watch
     return pst_shrink(c, pst_blocks_of(c, factor > 1 ? factor : 1), PST_SATURATED, &s->small);
 }
 
-static void tell(const placing *p, const vec3 *about, merlin_capture *c)
+static void report(const placing *p, const vec3 *about, merlin_capture *c)
 {
     float reach = reach_of(about, c->count);
     if (p->near)
@@ -231,7 +231,7 @@ status pst_place_lights(merlin_capture *c, const watch *shown)
     else
         c->camera = camera;
     c->about_object = false;
-    if (result == OK && !asked) tell(&p, about, c);
+    if (result == OK && !asked) report(&p, about, c);
     free(about);
     return result;
 }

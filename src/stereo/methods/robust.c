@@ -11,7 +11,7 @@
 enum { SAMPLE = 128, SWEEPS = 2 };
 
 /* What makes a pixel worth a longer search: many outliers, and many more than pixels of this object have. */
-static float dear(const pst_field *f, double cost)
+static float search_limit(const pst_field *f, double cost)
 {
     float many = 0.16f * (float)f->problem->capture->count, usual = (float)(cost / (double)f->count);
     return fmaxf(many, 2 * usual);
@@ -22,7 +22,7 @@ static status fit_all(const pst_field *f, merlin_surface *out)
     double cost;
     status s = pst_field_fit(f, &cost);
     if (s == OK) s = pst_field_try_second(f);
-    if (s == OK) s = pst_field_search(f, dear(f, cost));
+    if (s == OK) s = pst_field_search(f, search_limit(f, cost));
     if (s == OK) s = pst_field_spread(f, SWEEPS);
     if (s == OK) s = pst_field_mend(f, SWEEPS);
     return s == OK ? pst_field_store(f, out) : s;

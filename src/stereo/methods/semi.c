@@ -116,7 +116,7 @@ static void find_colours(semi_job *job, double *e)
 }
 
 /* The surface from the intensities. */
-static status look(semi_job *job, bool choose, const double *e)
+static status fit_surface(semi_job *job, bool choose, const double *e)
 {
     set_intensities(job, e);
     status s = choose ? pst_lobe_choose(&job->field, &job->lobe) : OK;
@@ -146,7 +146,7 @@ static status improve(semi_job *job, bool choose, int rounds, double *e)
 {
     status s = OK;
     for (int k = 0; s == OK && k < rounds; k++) {
-        s = look(job, choose && k % 3 == 0, e);
+        s = fit_surface(job, choose && k % 3 == 0, e);
         if (s == OK) correct(job, e);
     }
     return s;
@@ -156,7 +156,7 @@ static status improve(semi_job *job, bool choose, int rounds, double *e)
 static status try_terminator(semi_job *job, double *e)
 {
     if (job->problem.capture->count < PST_MANY_LIGHTS) return OK;
-    status s = look(job, true, e);
+    status s = fit_surface(job, true, e);
     if (job->lobe.terminator > 0) return s;
     job->lobe.terminator = likely_terminator;
     return s == OK ? improve(job, false, TRIAL_ROUNDS, e) : s;
@@ -171,7 +171,7 @@ static status settle(semi_job *job, int rounds, double *e)
     memcpy(lambert, e, bytes);
     for (size_t k = 0; k < count; k++)
         e[k] = 1;
-    status s = look(job, true, e);
+    status s = fit_surface(job, true, e);
     double cost = job->cost;
     job->least = HUGE_VAL;
     memcpy(e, lambert, bytes);
@@ -184,7 +184,7 @@ static status settle(semi_job *job, int rounds, double *e)
     job->equal = job->least >= worth_intensities * cost;
     for (size_t k = 0; k < count && job->equal; k++)
         e[k] = 1;
-    return s == OK ? look(job, true, e) : s;
+    return s == OK ? fit_surface(job, true, e) : s;
 }
 
 static status job_new(const pst_problem *p, merlin_light *light, semi_job *job)

@@ -12,7 +12,7 @@ enum { PASSES = 5, GRID = 12 };
 #define FRONTAL 0.8
 /* Cost of a surface that is nothing like the balloon, in costs of the most integrable one
  * (docs/notes/unknown_lights.md has what that is worth, and how the rest was measured). */
-static const double balloon_weight = 30;
+static const double inflated_weight = 30;
 /* Of an object's width (the root of its pixels), one way, over which it is averaged, and pixels at least. Rendered
  * objects of 64 pixels with noise of 1 % are 20 degrees off without that and 14 with it, without noise 7 either way;
  * twice as much is no better. */
@@ -135,7 +135,7 @@ typedef struct rotation_cost {
 } rotation_cost;
 
 /* How much a is like the balloon to the side and toward the camera; below 0: its mirror image is. */
-static void liken(const rotation_cost *c, const double a[9], double *aside, double *toward)
+static void measure_likeness(const rotation_cost *c, const double a[9], double *aside, double *toward)
 {
     *aside = *toward = 0;
     for (int j = 0; j < 6; j++)
@@ -148,7 +148,7 @@ static void liken(const rotation_cost *c, const double a[9], double *aside, doub
 static double cost_at(const rotation_cost *c, const double a[9])
 {
     double aside, toward;
-    liken(c, a, &aside, &toward);
+    measure_likeness(c, a, &aside, &toward);
     return form_at(c->form, a) + c->pull * (1 - fabs(aside) - fabs(toward));
 }
 
@@ -156,7 +156,7 @@ static double cost_at(const rotation_cost *c, const double a[9])
 static void mirror(const rotation_cost *c, double a[9])
 {
     double aside, toward;
-    liken(c, a, &aside, &toward);
+    measure_likeness(c, a, &aside, &toward);
     for (int j = 0; j < 9; j++)
         a[j] *= (j < 6 ? aside : toward) < 0 ? -1 : 1;
 }
@@ -181,7 +181,7 @@ static void descend(const rotation_cost *c, double reach, double a[9])
     }
 }
 
-static void compare_with_balloon(const pst_pseudo *f, double products[9])
+static void compare_with_inflated(const pst_pseudo *f, double products[9])
 {
     const pst_problem *p = f->problem;
     for (size_t i = 0; i < p->pixel_count; i++) {
@@ -311,11 +311,11 @@ static status rotate(const pst_pseudo *f, vec3 mean, pst_rotation *out)
     if (s != OK) return s;
     bool faces_away = share_away(f, out->at) > PST_MOST_AWAY;
     double least = form_at(c.form, out->at) / fmax(trace(c.form), 1e-300);
-    compare_with_balloon(f, c.balloon);
+    compare_with_inflated(f, c.balloon);
     double alone[9];
     memcpy(alone, out->at, sizeof alone);
     mirror(&c, alone);
-    s = rotate_by(f, mean, balloon_weight * least, &c, out->at);
+    s = rotate_by(f, mean, inflated_weight * least, &c, out->at);
     if (s != OK) return s;
     mirror(&c, out->at);
     out->unsure = faces_away || least > not_integrable || degrees_between(alone, out->at) > far_apart ||

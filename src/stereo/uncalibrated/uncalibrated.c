@@ -78,7 +78,7 @@ static double likeness(const pst_field *f, const img *balloon)
 }
 
 /* What the robust fit leaves of a sample. */
-static status judge(const pst_problem *p, const img *balloon, hypothesis *h)
+static status evaluate(const pst_problem *p, const img *balloon, hypothesis *h)
 {
     uint32_t *pixel;
     pst_problem under = *p;
@@ -147,13 +147,13 @@ static status find_near(const pst_problem *p, const img *balloon, hypothesis *h,
     if (s != OK) return s;
     *distance = mean_distance(p, h);
     if (*distance >= farthest) return fail(MERLIN_BAD_INPUT, "the lights are not near");
-    return judge(p, balloon, h);
+    return evaluate(p, balloon, h);
 }
 
 static status find_distant(const pst_problem *p, const img *balloon, hypothesis *h)
 {
     status s = pst_find_distant_lights(p, balloon, h->light, &h->rotation);
-    return s == OK ? judge(p, balloon, h) : s;
+    return s == OK ? evaluate(p, balloon, h) : s;
 }
 
 /* Lights of a kind that cannot be have an infinite cost. */
