@@ -72,6 +72,8 @@ typedef struct merlin_maps {
     unsigned doubts;       /* merlin_doubt's bits; of maps that were read, what was mended of them alone */
     float light_elsewhere; /* how likely the photograph was lit from elsewhere than the lens, in [0, 1] */
     int reduced, frames;   /* merlin_shot's */
+    int captured;   /* 1: of a surface of photometric stereo, which has no gloss and no photograph: `photo` is black. It
+                     * stands about (0, 0, -1), the square around it for a frame 60 degrees wide */
     float fov;      /* how wide the crop is, degrees, by what is known of the lens; 0: unknown, they take it for 60 */
     float slant[2]; /* where the crop's middle is as seen from the lens, sines to the right and upwards; the maps' space
                      * is that of a camera that looks at it */
@@ -140,9 +142,12 @@ merlin_status merlin_maps_write(merlin_model *model, const merlin_maps *maps, co
 /* Composes the text of report.json: what was done to a photograph, its doubts, the maps' statistics (docs/json.md has
  * the names). It is yours to give to free. */
 merlin_status merlin_maps_report(const merlin_maps *maps, char **text);
-/* Reads maps.exr of such a folder, edited or not: values that are not finite, and maps that are wholly out of their
- * range or of another size than was written, are MERLIN_BAD_INPUT. The reconstruction stays without data. */
+/* Reads maps.exr of such a folder, or of a captured surface's, edited or not: values that are not finite, and maps that
+ * are wholly out of their range or of another size than was written, are MERLIN_BAD_INPUT. The reconstruction stays
+ * without data. */
 merlin_status merlin_maps_read(const char *folder, merlin_maps *maps);
+/* Finds which of the two these are, without reading them: *captured as in merlin_maps, 0 if they cannot be read. */
+merlin_status merlin_maps_look(const char *folder, int *captured);
 
 #ifdef __cplusplus
 }

@@ -7,7 +7,8 @@
  *         fprintf(stderr, "%s\n", merlin_error());
  *
  * One file that asks the network for nothing: the maps of the square around the object, as compressed whole numbers,
- * and the program that lights them (WebGL2) as merlin_relight does it, MERLIN_BY_BRDF_DIRECT. */
+ * and the program that lights them (WebGL2) as merlin_relight does it, MERLIN_BY_BRDF_DIRECT. A captured surface is
+ * exposed so that lamps of power 1 at distance 1 leave it below white. */
 #ifndef MERLIN_VIEW_H
 #define MERLIN_VIEW_H
 
@@ -25,8 +26,6 @@ typedef struct merlin_view_params {
     const char *name;   /* what the page is called; NULL: "object" */
     const char *folder; /* of the maps, for the commands that the page tells; NULL: "FOLDER" */
     int side;           /* another than MERLIN_VIEW_SIDE, within the other two; 0: that */
-    int captured;       /* 1: a surface of photometric stereo, which has no gloss and no photograph, and is exposed so
-                           that lamps of power 1 at distance 1 leave it below white */
 } merlin_view_params;
 
 /* The whole page or, after a failure, none. params NULL: the usual case. */

@@ -62,7 +62,7 @@ Maps = _struct("maps", [(name, Image) for name in MAP_NAMES] + [
     ("crop", Crop), ("size", c_int), ("gain", c_float), ("burnt_out", c_float), ("mask_source", c_int),
     ("has_environment", c_int), ("environment", floats9x3), ("light", FoundLight), ("mask_confidence", c_float),
     ("model", c_char * 64), ("timing", Timing), ("doubts", c_uint), ("light_elsewhere", c_float), ("reduced", c_int),
-    ("frames", c_int), ("fov", c_float), ("slant", c_float * 2), ("mended", Mended)])
+    ("frames", c_int), ("captured", c_int), ("fov", c_float), ("slant", c_float * 2), ("mended", Mended)])
 DOUBTS = (
     "NO_OBJECT", "BURNT_OUT", "OBJECT_UNSURE", "LIGHT_ELSEWHERE", "NO_FLASH", "LIGHT_BEHIND", "HOLLOW", "DRAWING",
     "LENS_NARROW", "LENS_WIDE", "DARK", "OBJECT_CUT", "OBJECT_SMALL", "GREY", "REDUCED", "FIRST_FRAME",
@@ -134,7 +134,7 @@ MeshParams = _struct("mesh_params", [("side", c_int), ("texture_side", c_int)])
 # ---- view.h ----
 
 VIEW_SIDE, VIEW_LEAST_SIDE, VIEW_MOST_SIDE = 2048, 64, 4096
-ViewParams = _struct("view_params", [("name", c_char_p), ("folder", c_char_p), ("side", c_int), ("captured", c_int)])
+ViewParams = _struct("view_params", [("name", c_char_p), ("folder", c_char_p), ("side", c_int)])
 
 # ---- weights.h ----
 
@@ -188,6 +188,7 @@ FUNCTIONS: Dict[str, Tuple[Any, List[Any]]] = {
     "maps_write": (c_int, [_handle, _at(Maps), _at(WriteParams), c_char_p]),
     "maps_report": (c_int, [_at(Maps), POINTER(c_void_p)]),
     "maps_read": (c_int, [c_char_p, _at(Maps)]),
+    "maps_look": (c_int, [c_char_p, POINTER(c_int)]),
     "shot_read": (c_int, [c_char_p, _at(Shot)]),
     "params_default": (Params, []),
     "estimate": (c_int, [_handle, _at(Image), _at(Image), _at(Params), _at(Maps)]),

@@ -227,12 +227,10 @@ class Maps:
         warn(made.doubts)
         return made
 
-    def view(self, path: PathLike, *, name: Optional[str] = None, folder: Optional[PathLike] = None, side: int = 0,
-             captured: bool = False) -> None:
+    def view(self, path: PathLike, *, name: Optional[str] = None, folder: Optional[PathLike] = None, side: int = 0) -> None:
         """Writes one HTML page that any browser opens, offline, and in which the maps are lit.
 
         name: what the page is called. folder: of the maps, for the commands that the page tells. side: pixels a side,
-        64 to 4096 (0: at most 2048). captured: the maps are a surface of photometric stereo."""
-        params = h.ViewParams(None if name is None else name.encode(), optional_path(folder), whole(side, "side"),
-                              int(captured))
+        64 to 4096 (0: at most 2048)."""
+        params = h.ViewParams(None if name is None else name.encode(), optional_path(folder), whole(side, "side"))
         check("view_write", self._sound(), ctypes.byref(params), path_bytes(path))

@@ -238,7 +238,7 @@ static status write_more(const more_work *w, const merlin_maps *maps, maps_stagi
 {
     char path[PATH_MAX];
     status s = write_meshes(w, maps, to);
-    const page_source of = {standard_input_name(w->job->photo), w->job->output, 0, false};
+    const page_source of = {standard_input_name(w->job->photo), w->job->output, 0};
     if (s == OK && w->request->html) s = page_write(maps, &of, staging_path(to->at[0], PAGE_FILE, path));
     return s == OK && cli_interrupted() ? fail(MERLIN_STOPPED, "stopped") : s;
 }

@@ -8,7 +8,6 @@
 #include "base/progress.h"
 #include "base/text/report.h"
 #include "cli/commands.h"
-#include "cli/stereo/stereo_maps.h"
 #include "cli/written.h"
 #include "command/cli.h"
 #include "command/json_line.h"
@@ -124,14 +123,6 @@ static status check_folders(const request *r, const char *output)
     return OK;
 }
 
-static status read_maps(const request *r, merlin_maps *maps)
-{
-    bool captured;
-    status s = stereo_maps_look(r->input, &captured);
-    if (s != OK) return s;
-    return captured ? stereo_maps_read(r->input, maps) : merlin_maps_read(r->input, maps);
-}
-
 static status announce(const request *r, const char *output, const merlin_export_facts *facts,
                        const merlin_files *written, double seconds)
 {
@@ -161,7 +152,7 @@ static status run(const request *r)
     char *output = photo_output_inside(r->input, "export", r->output);
     if (!output) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
     status s = check_folders(r, output);
-    if (s == OK) s = read_maps(r, &maps);
+    if (s == OK) s = merlin_maps_read(r->input, &maps);
     if (s == OK) s = merlin_maps_export(&maps, &r->params, output, &facts, &written);
     if (s == OK) s = announce(r, output, &facts, &written, clock_seconds() - began);
     merlin_files_free(&written);

@@ -13,7 +13,6 @@
 #include "cli/expect.h"
 #include "cli/page.h"
 #include "cli/stage_bar.h"
-#include "cli/stereo/stereo_maps.h"
 #include "cli/written.h"
 #include "command/cli.h"
 #include "command/json_line.h"
@@ -107,19 +106,12 @@ static status announce(const request *r, const merlin_maps *maps, const char *fo
 
 /* ---- the work ---- */
 
-static status write_page(const request *r, const merlin_maps *maps, bool captured, staging *t, const char *file)
+static status write_page(const request *r, const merlin_maps *maps, staging *t, const char *file)
 {
     char path[PATH_MAX];
-    const page_source of = {r->input, r->input, r->side, captured};
+    const page_source of = {r->input, r->input, r->side};
     status s = page_write(maps, &of, staging_path(t, file, path));
     return s == OK && cli_interrupted() ? fail(MERLIN_STOPPED, "stopped") : s;
-}
-
-static status read_maps(const request *r, bool *captured, merlin_maps *maps)
-{
-    status s = stereo_maps_look(r->input, captured);
-    if (s != OK) return s;
-    return *captured ? stereo_maps_read(r->input, maps) : merlin_maps_read(r->input, maps);
 }
 
 /* file: the page's name in the folder. */
@@ -129,7 +121,6 @@ static status view(const request *r, const char *folder, const char *file)
     merlin_maps maps = {0};
     staged_files written = {0};
     staging *t = NULL;
-    bool captured = false;
     stage_bar bar;
     stage_cost stages[STAGE_BAR_MOST];
     size_t count = expect_maps(pixels, stages, 0);
@@ -139,9 +130,9 @@ static status view(const request *r, const char *folder, const char *file)
     const watch shown = stage_bar_watch(&bar);
     status s = staging_begin(folder, NULL, &t);
     if (s == OK) watch_tell(&shown, "reading", 0);
-    if (s == OK) s = read_maps(r, &captured, &maps);
+    if (s == OK) s = merlin_maps_read(r->input, &maps);
     if (s == OK) watch_tell(&shown, "writing", 0);
-    if (s == OK) s = write_page(r, &maps, captured, t, file);
+    if (s == OK) s = write_page(r, &maps, t, file);
     if (t) s = s == OK ? staging_commit(t, &written) : staging_abort(t, s);
     stage_bar_end(&bar);
     if (s == OK) s = announce(r, &maps, folder, &written, clock_seconds() - began);

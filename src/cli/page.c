@@ -23,7 +23,7 @@ status page_write(const merlin_maps *maps, const page_source *of, const char *pa
 {
     char *name = name_of(of->input);
     if (!name) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
-    const merlin_view_params params = {.name = name, .folder = of->folder, .side = of->side, .captured = of->captured};
+    const merlin_view_params params = {.name = name, .folder = of->folder, .side = of->side};
     status s = merlin_view_write(maps, &params, path);
     free(name);
     return s;

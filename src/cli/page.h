@@ -3,8 +3,6 @@
 #ifndef MERLIN_CLI_PAGE_H
 #define MERLIN_CLI_PAGE_H
 
-#include <stdbool.h>
-
 #include "base/status.h"
 #include "base/warnings.h"
 #include "merlin/view.h"
@@ -15,8 +13,7 @@
 /* A page's maps: of which photograph or folder they are, for its name, and where they lie. */
 typedef struct page_source {
     const char *input, *folder;
-    int side;      /* as of merlin_view_params */
-    bool captured; /* likewise */
+    int side; /* as of merlin_view_params */
 } page_source;
 
 status page_write(const merlin_maps *maps, const page_source *of, const char *path);

@@ -89,7 +89,7 @@ static void put_all(cJSON *root, const merlin_maps *maps, const merlin_view_para
     put_photograph(root, maps);
     put_camera(root, &s->full);
     json_put_bool(root, "matte", s->full.matte);
-    json_put_bool(root, "metered", params->captured != 0);
+    json_put_bool(root, "metered", maps->captured != 0);
     json_put_number(root, "white", (double)white);
     json_put_number(root, "ev", log2((double)s->white / (double)white));
     put_range(root, "depth", ranges->covered);

@@ -106,14 +106,13 @@ static status fill(const merlin_maps *maps, const merlin_view_params *params, pa
     status done = relighter_new(NULL, maps, maps->crop.side > most ? most : 0, MERLIN_BY_BRDF_DIRECT, &s);
     if (done != OK) return done;
     float white = s.white;
-    if (params->captured) done = relighter_make_matte(&s);
-    if (done == OK && params->captured) done = meter(&s, &white);
+    if (maps->captured) done = meter(&s, &white);
     const view_ranges ranges = view_ranges_of(&s);
     if (done == OK) done = view_scene_text(maps, params, &s, &ranges, white, &p->scene);
     if (done == OK) done = view_planes_make(&s, &ranges, &p->planes);
     const int side = s.full.mask.width;
     relighter_free(&s);
-    if (done == OK && !params->captured) done = take_photo(maps, side, p);
+    if (done == OK && !maps->captured) done = take_photo(maps, side, p);
     return done;
 }
 

@@ -59,6 +59,8 @@ for file in ./b.{mtl,obj,png} out/{maps.exr,report.json}; do
     grep -qF "\"$file\"" stdout || complain "the files do not have $file: $(cat stdout)"
 done
 
+refuses 1 'out holds a captured surface' stereo out
+
 echo "one photograph"
 # by weights that ship: those of four presentations make much of the last digit, which processors differ in
 export MERLIN_MODEL=$MERLIN_SOURCE_DIR/models/merlin-point.safetensors

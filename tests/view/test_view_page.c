@@ -229,8 +229,9 @@ static void larger_squares_become_as_large_as_is_asked(void **state)
 static void a_captured_surface_has_neither_gloss_nor_photograph(void **state)
 {
     const fixture *f = *state;
-    const merlin_view_params params = {.captured = 1};
-    char *page = write_page(f, &params), *scene = content(page, "id=\"scene\"");
+    fixture captured = *f; /* whose maps are borrowed */
+    captured.maps.captured = 1;
+    char *page = write_page(&captured, NULL), *scene = content(page, "id=\"scene\"");
     assert_null(strstr(page, "id=\"map-roughness\""));
     assert_null(strstr(page, "id=\"map-photo\""));
     assert_non_null(strstr(scene, "\"matte\":true"));

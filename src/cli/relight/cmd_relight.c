@@ -14,7 +14,6 @@
 #include "cli/relight/lamps.h"
 #include "cli/relight/relight_output.h"
 #include "cli/stage_bar.h"
-#include "cli/stereo/stereo_maps.h"
 #include "cli/written.h"
 #include "command/check_files.h"
 #include "command/cli.h"
@@ -116,8 +115,8 @@ typedef struct request {
     img_file_kind format;
     int orbit, frame;
     relight_dome dome;
-    bool found, near, no_shadows, no_bounces, matte, json, quiet, help,
-        captured; /* the last: input is a capture's maps */
+    bool found, near, no_shadows, no_bounces, matte, json, quiet, help;
+    int captured; /* input is a capture's maps */
 } request;
 
 static status take_exposing(const char *text, void *into)
@@ -206,7 +205,7 @@ static status check_way(request *r)
         return fail(MERLIN_WRONG_USE, "--matte is of --by brdf; the relighting decoder paints gloss");
     if (r->found && by_network)
         return fail(MERLIN_WRONG_USE, "--found-light is of --by brdf; the relighting decoder knows one lamp alone");
-    status s = stereo_maps_look(r->input, &r->captured);
+    status s = merlin_maps_look(r->input, &r->captured);
     if (by_network && r->captured)
         return fail(MERLIN_WRONG_USE, "--by network wants a photograph; %s holds the maps of merlin stereo", r->input);
     if (r->no_shadows || r->no_bounces) r->how = r->no_shadows ? MERLIN_BY_BRDF_UNSHADOWED : MERLIN_BY_BRDF_DIRECT;
@@ -314,8 +313,7 @@ static status read_lamps(request *r)
 static status get_maps(request *r, merlin_model *model, const watch *shown, merlin_maps *maps)
 {
     *maps = (merlin_maps){0};
-    if (file_is_folder(r->input))
-        return r->captured ? stereo_maps_read(r->input, maps) : merlin_maps_read(r->input, maps);
+    if (file_is_folder(r->input)) return merlin_maps_read(r->input, maps);
     r->params.progress = shown->tell, r->params.progress_context = shown->context;
     return photo_maps(model, r->input, r->mask, &r->params, maps);
 }

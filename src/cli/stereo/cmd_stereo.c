@@ -128,6 +128,15 @@ static bool is_capture(const request *r)
     return file_is_folder(r->input) && !r->maps;
 }
 
+static status check_maps(const request *r)
+{
+    int captured = 0;
+    status s = photo_check_maps(r->input, r->folder.files.mask, &r->params);
+    if (s == OK) s = merlin_maps_look(r->input, &captured);
+    if (s != OK || !captured) return s;
+    return fail(MERLIN_BAD_INPUT, "%s holds a captured surface, not the maps of one photograph to relight", r->input);
+}
+
 static status check(request *r)
 {
     const merlin_capture_files *o = &r->folder.files;
@@ -148,7 +157,7 @@ static status check(request *r)
         return fail(MERLIN_WRONG_USE,
                     "--method %s is for distant lights, and one photograph is relit by near ones: use near",
                     pst_method_name(r->folder.params.method));
-    if (r->maps) return photo_check_maps(r->input, o->mask, &r->params);
+    if (r->maps) return check_maps(r);
     if (is_capture(r) && (r->weights || photo_params_given(&r->params)))
         return fail(MERLIN_WRONG_USE,
                     "--model, --size, --views, --exposure, --point and --box are for one photograph, not for a folder");

@@ -8,7 +8,6 @@
 #include "base/json/json_put.h"
 #include "base/parallel.h"
 #include "cli/page.h"
-#include "cli/stereo/stereo_maps.h"
 #include "cli/stereo/stereo_view.h"
 #include "estimate/files/map_png.h"
 #include "estimate/files/maps_files.h"
@@ -184,8 +183,8 @@ static status write_page(const stereo_files *files, const staging *t)
 {
     char path[PATH_MAX], *folder = file_folder_of(staging_path(t, "maps.exr", path));
     merlin_maps maps = {0};
-    status s = folder ? stereo_maps_read(folder, &maps) : fail(MERLIN_NO_MEMORY, "no memory for a file name");
-    const page_source of = {files->input, files->folder, 0, true};
+    status s = folder ? merlin_maps_read(folder, &maps) : fail(MERLIN_NO_MEMORY, "no memory for a file name");
+    const page_source of = {files->input, files->folder, 0};
     if (s == OK) s = page_write(&maps, &of, staging_path(t, PAGE_FILE, path));
     merlin_maps_free(&maps);
     free(folder);

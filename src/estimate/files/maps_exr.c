@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Reads and writes maps.exr. It also contains the photograph, so that the network, too, can relight a folder. */
+/* Reads and writes the maps.exr of a photograph. It also contains the photograph, so that the network, too, can relight
+ * a folder. */
 #include <assert.h>
 #include <math.h>
 #include <stddef.h>
@@ -7,8 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/api_needs.h"
-#include "base/file.h"
 #include "base/half.h"
 #include "estimate/files/maps_examine.h"
 #include "estimate/files/maps_files.h"
@@ -296,27 +295,14 @@ void maps_tidy(merlin_maps *maps)
     img_zero_invalid(&photo);
 }
 
-merlin_status merlin_maps_read(const char *folder, merlin_maps *maps)
+status maps_read_photographed(exr_file *f, const char *path, merlin_maps *maps)
 {
-    if (maps) *maps = (merlin_maps){0};
-    status s = api_needs(__func__, folder && maps);
-    if (s != OK) return s;
-    char *path = file_join(folder, "maps.exr");
-    if (!path) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
-    exr_file *f = NULL;
-    s = file_exists(path) ? exr_open(path, &f)
-                          : fail(MERLIN_BAD_INPUT, "no maps.exr in %s: run merlin estimate first", folder);
-    if (s == OK) s = read_attributes(f, path, maps);
+    status s = read_attributes(f, path, maps);
     if (s == OK) s = maps_read_layers(f, path, true, maps);
     if (s == OK) s = maps_check_crop(path, exr_has_attribute(f, "merlinPicture"), maps);
-    if (f) exr_close(f);
-    free(path);
-    if (s != OK) {
-        merlin_maps_free(maps);
-        return s;
-    }
+    if (s != OK) return s;
     maps_tidy(maps);
     img photo = maps->photo, mask = maps->mask;
     maps->burnt_out = exposure_burnt_out(&photo, &mask);
-    return MERLIN_OK;
+    return OK;
 }

@@ -13,6 +13,10 @@ exr_attribute maps_picture_size(int width, int height);
  * MERLIN_BAD_INPUT for unusable maps (maps_examine.h); path is for messages. Call merlin_maps_free after a failure,
  * too. */
 status maps_read_layers(exr_file *f, const char *path, bool photographed, merlin_maps *maps);
+/* Reads a photograph's maps, or those of a captured surface, which become like a photograph's: the square around it is
+ * the frame of a camera 60 degrees wide. Call merlin_maps_free after a failure, too. */
+status maps_read_photographed(exr_file *f, const char *path, merlin_maps *maps);
+status maps_read_captured(exr_file *f, const char *path, merlin_maps *maps);
 /* Restores the properties that other functions rely on: half floats are not exactly unit normals, and files may have
  * been edited. */
 void maps_tidy(merlin_maps *maps);

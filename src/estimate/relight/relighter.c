@@ -81,6 +81,7 @@ status relighter_resize(relighter *s, const merlin_maps *maps, int side)
 static status take_low(network *n, const merlin_maps *maps, const img *mask, relighter *s)
 {
     status result = maps_take_surface(maps, mask, maps->size, true, &s->low);
+    s->low.matte = maps->captured;
     if (result == OK) result = take_low_photo(maps, &s->low.mask, &s->low_photo);
     if (result == OK) result = surface_shade(&s->low, vec3_make(0, 0, 0), &s->flash);
     if (result == OK && s->how == MERLIN_BY_NETWORK)
@@ -95,10 +96,14 @@ status relighter_new(network *n, const merlin_maps *maps, int side, merlin_relig
     *out = (relighter){.how = how};
     img mask = {0}, photo = maps->photo;
     status s = maps_check(maps);
+    if (s == OK && maps->captured && how == MERLIN_BY_NETWORK)
+        s = fail(MERLIN_WRONG_USE,
+                 "the relighting decoder wants a photograph, and these maps are a captured surface's");
     if (s == OK) out->white = exposure_white(&photo, maps->gain);
     if (s == OK) s = maps_take_mask(maps, &mask);
     if (s == OK) s = take_low(n, maps, &mask, out);
     if (s == OK) s = take_full(maps, &mask, side, &out->full);
+    out->full.matte = maps->captured;
     img_free(&mask);
     if (s != OK) relighter_free(out);
     return s;

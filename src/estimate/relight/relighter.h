@@ -35,7 +35,7 @@ static inline bool relighter_casts_shadows(const relighter *s)
 }
 
 /* Prepares maps. side: the square's pixels per side; 0: as many as the crop has in the photograph. n may be NULL for
- * MERLIN_BY_BRDF_DIRECT. */
+ * MERLIN_BY_BRDF_DIRECT. Captured surfaces are matte. */
 status relighter_new(network *n, const merlin_maps *maps, int side, merlin_relighting how, relighter *out);
 void relighter_free(relighter *s);
 /* Changes the side. After a failure the relighter may only be freed. */

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-#include "cli/stereo/stereo_maps.h"
+/* The maps of a captured surface, made a photograph's: the crop around it is a frame 60 degrees wide, its mean depth is
+ * 1, its relief keeps its proportion to its width. Nothing was measured of its gloss: it is rough. There is no
+ * photograph: `photo` is black. */
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "base/file.h"
 #include "base/number.h"
 #include "estimate/files/maps_files.h"
 #include "estimate/surface/crop.h"
@@ -20,17 +21,6 @@ enum { FRAME = 256 };
 static const float WHITE = LIGHT_POWER / PI;
 /* Of depth, as estimates have it; nearer than this a surface would reach the camera. */
 static const float nearest = 0.25f, farthest = 20;
-
-status stereo_maps_look(const char *folder, bool *theirs)
-{
-    char *path = file_join(folder, "maps.exr");
-    exr_file *f = NULL;
-    status s = path ? exr_open(path, &f) : fail(MERLIN_NO_MEMORY, "no memory for a file name");
-    *theirs = s == OK && exr_get_text(f, "merlinError");
-    exr_close(f);
-    free(path);
-    return s == MERLIN_NO_MEMORY ? s : OK;
-}
 
 /* No lens is so wide that its focal length is less than a hundredth of the picture. */
 static status read_focal(const exr_file *f, const char *path, float *focal)
@@ -130,20 +120,13 @@ static status place(merlin_maps *maps, float focal)
     return OK;
 }
 
-status stereo_maps_read(const char *folder, merlin_maps *out)
+status maps_read_captured(exr_file *f, const char *path, merlin_maps *out)
 {
-    *out = (merlin_maps){.size = FRAME, .gain = WHITE, .mask_source = MERLIN_MASK_GIVEN, .mask_confidence = 1};
+    *out = (merlin_maps){
+        .size = FRAME, .gain = WHITE, .mask_source = MERLIN_MASK_GIVEN, .mask_confidence = 1, .captured = 1};
     snprintf(out->model, sizeof out->model, "merlin stereo");
-    char *path = file_join(folder, "maps.exr");
-    if (!path) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
-    exr_file *f = NULL;
     float focal = 0;
-    status s = exr_open(path, &f);
-    if (s == OK) s = read_focal(f, path, &focal);
+    status s = read_focal(f, path, &focal);
     if (s == OK) s = maps_read_layers(f, path, false, out);
-    if (f) exr_close(f);
-    if (s == OK && (s = place(out, focal)) != OK) s = fail_in(s, "%s", path);
-    free(path);
-    if (s != OK) merlin_maps_free(out);
-    return s;
+    return s == OK && (s = place(out, focal)) != OK ? fail_in(s, "%s", path) : s;
 }
