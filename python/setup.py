@@ -76,7 +76,8 @@ class BuildWithLibrary(build_py):
     """Puts the library and the weights beside the modules."""
 
     def run(self):
-        """Builds the package."""
+        """Builds the package, without what an earlier build has left."""
+        shutil.rmtree(os.path.join(self.build_lib, "merlin"), ignore_errors=True)
         super().run()
         if not self.editable_mode:
             self._add(os.path.join(self.build_lib, "merlin"))

@@ -9,7 +9,7 @@
     merlin.write_image("relit.png", relit)
 
     surface = merlin.stereo(["a.png", "b.png", "c.png", ...], directions)
-    surface.save("surface.glb")
+    surface.mesh().save("surface.glb")
 
 Images are linear sRGB float32, rows from the top. Space: the camera is at the origin and looks along -z, x right, y up;
 the object stands near (0, 0, -1). What goes wrong is a MerlinError with the library's sentence. Several threads may
@@ -24,6 +24,7 @@ from .capture import Capture, Light, Surface, stereo
 from .errors import (BadInputError, CannotWriteError, DeviceError, MerlinError, MerlinWarning, MissingFileError,
                      NoMemoryError, StoppedError, WrongUseError)
 from .maps import Maps, Mended
+from .mesh import Mesh
 from .model import FoundObject, Model, estimate, find_object, read_shot
 from .pictures import read_image, read_mask, to_pixels, write_image
 from .relighting import Environment, Relighter
@@ -47,7 +48,7 @@ def version() -> str:
 __all__ = [
     "BadInputError", "Calibration", "Camera", "CannotWriteError", "Capture", "Circle", "Crop", "DeviceError",
     "Environment", "FoundLight", "FoundObject", "Light", "Maps", "Mended", "MerlinError", "MerlinWarning",
-    "MissingFileError", "Model", "NoMemoryError", "Notice", "Relighter", "Shot", "SkippedFile", "StoppedError",
+    "Mesh", "MissingFileError", "Model", "NoMemoryError", "Notice", "Relighter", "Shot", "SkippedFile", "StoppedError",
     "Surface", "Tensor", "Weights", "WrongUseError", "calibrate", "estimate", "find_object", "read_image", "read_mask", "read_shot",
     "set_threads", "stereo", "to_pixels", "version", "write_image",
 ]

@@ -9,7 +9,7 @@ import ctypes
 import os
 import signal
 import threading
-from typing import Any, Callable, Optional
+from typing import Any, Callable, List, Optional
 
 import numpy as np
 
@@ -17,6 +17,8 @@ from . import _headers, _library
 from .errors import BY_STATUS, BadInputError, MerlinError, MissingFileError
 
 library = _library.load()
+free = ctypes.CDLL(None).free  # of the C library, for what a caller gives back to it
+free.argtypes, free.restype = [ctypes.c_void_p], None
 
 ProgressCallback = Callable[[str, float], Any]
 StopCallback = Callable[[], Any]
@@ -150,9 +152,9 @@ class Owner:
 class _Memory:
     """Memory of the library as numpy takes it; numpy keeps this, and this keeps the owner."""
 
-    def __init__(self, owner: Any, address: int, shape: tuple) -> None:
+    def __init__(self, owner: Any, address: int, shape: tuple, typestr: str) -> None:
         self.owner = owner
-        self.__array_interface__ = {"version": 3, "typestr": "<f4", "shape": shape, "data": (address, False)}
+        self.__array_interface__ = {"version": 3, "typestr": typestr, "shape": shape, "data": (address, False)}
 
 
 def view(owner: Any, image: Any) -> Optional[np.ndarray]:
@@ -160,7 +162,19 @@ def view(owner: Any, image: Any) -> Optional[np.ndarray]:
     if not image.data:
         return None
     shape = (image.height, image.width) + ((image.channels,) if image.channels != 1 else ())
-    return np.asarray(_Memory(owner, image.data, shape))
+    return np.asarray(_Memory(owner, image.data, shape, "<f4"))
+
+
+def view_of(owner: Any, pointer: Any, shape: tuple, typestr: str = "<f4") -> Optional[np.ndarray]:
+    """What a pointer of the library points to, as an array without a copy; None where there is nothing."""
+    if not pointer:
+        return None
+    return np.asarray(_Memory(owner, ctypes.cast(pointer, ctypes.c_void_p).value, shape, typestr))
+
+
+def written_paths(files: Owner) -> List[str]:
+    """The paths of merlin_files."""
+    return [os.fsdecode(files.struct.at[i]) for i in range(files.struct.count)]
 
 
 def path_bytes(path: Any) -> bytes:

@@ -10,6 +10,7 @@ import numpy as np
 
 from . import _headers as h
 from ._call import Owner, ProgressCallback, StopCallback, Watch, check, choice, optional_path, path_bytes, real, view
+from ._call import written_paths
 from .capture import Light, light_of
 from .pictures import PathLike
 from .results import Circle, Notice, SkippedFile, notices, skipped, warn
@@ -53,7 +54,7 @@ class Calibration:
         a failure, none. Returns their paths."""
         written = Owner(h.Files(), "files_free")
         check("calibration_write", self._owner.at, path_bytes(folder), written.at)
-        return [os.fsdecode(written.struct.at[i]) for i in range(written.struct.count)]
+        return written_paths(written)
 
 
 def calibrate(folder: PathLike, ball: str = "chrome", *, mask: Optional[PathLike] = None, linear: bool = False,

@@ -9,10 +9,11 @@ from typing import Any, List, NamedTuple, Optional, Sequence, Tuple, Union
 import numpy as np
 
 from . import _headers as h
-from . import pictures
+from . import mesh, pictures
 from ._call import Owner, ProgressCallback, StopCallback, Watch, check, choice, is_path, optional_path, path_bytes
 from ._call import real, vector3, view, whole
 from .errors import WrongUseError
+from .mesh import Mesh
 from .pictures import PathLike, Picture
 from .results import Camera, Notice, notices, warn
 
@@ -138,14 +139,10 @@ class Surface:
     def __repr__(self) -> str:
         return f"<merlin.Surface {self.mask.shape[0]} x {self.mask.shape[1]} by {self.method}>"
 
-    def save(self, path: PathLike) -> None:
-        """Writes the front as triangles, by the path's ending: .ply with vertex colours, .obj (with .mtl and .png
-        beside it), .glb with albedo and normals as textures. Albedo is scaled so that its brightest are 0.9."""
-        name = path_bytes(path)
-        check("mesh_check_name", name)
-        mesh = Owner(h.Mesh(), "mesh_free")
-        check("mesh_from_surface", self._owner.at, mesh.at)
-        check("mesh_write", mesh.at, name, None)
+    def mesh(self) -> Mesh:
+        """The front as triangles, a vertex for each pixel of the mask; albedo is scaled so that its brightest are 0.9.
+        `.save("surface.glb")` writes it."""
+        return mesh.of_surface(self)
 
 
 # ---- the short way ----

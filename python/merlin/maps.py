@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 import ctypes
+import json
 import os
 from typing import TYPE_CHECKING, Any, Dict, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
 from . import _headers as h
-from ._call import Owner, call, check, optional_path, path_bytes, view, whole
+from . import mesh
+from ._call import Owner, ProgressCallback, StopCallback, Watch, call, check, free, optional_path, path_bytes
+from ._call import view, whole
 from .errors import WrongUseError
+from .mesh import Mesh
 from .pictures import PathLike
-from .results import Crop, FoundLight, Notice, found_light, warn
+from .results import Crop, FoundLight, Notice, found_light, notices, warn
 
 if TYPE_CHECKING:
     from .model import Model
     from .relighting import Environment, Relighter
-
-_SENTENCE = 1024
 
 
 class Mended(NamedTuple):
@@ -160,13 +162,25 @@ class Maps:
     @property
     def doubts(self) -> Tuple[Notice, ...]:
         """Why the maps may be wrong, the gravest first."""
-        text = ctypes.create_string_buffer(_SENTENCE)
-        found = []
-        for bit in range(len(h.DOUBTS)):
-            if self._struct.doubts & 1 << bit:
-                call("doubt_message", self._owner.at, 1 << bit, text, _SENTENCE)
-                found.append(Notice(call("doubt_code", 1 << bit).decode(), text.value.decode("utf-8", "replace")))
-        return tuple(found)
+        found = h.Warnings()
+        call("maps_warnings", self._owner.at, ctypes.byref(found))
+        return notices(found)
+
+    @property
+    def light_words(self) -> str:
+        """The photograph's light for a person, "a lamp from the upper left, 40 degrees aside"; "": not known."""
+        text = ctypes.create_string_buffer(h.LIGHT_WORDS)
+        call("light_words", ctypes.byref(self._struct.light), text, h.LIGHT_WORDS)
+        return text.value.decode("utf-8", "replace")
+
+    def report(self) -> Dict[str, Any]:
+        """What report.json has (docs/json.md): what was done, the doubts, the maps' statistics."""
+        text = ctypes.c_void_p()
+        check("maps_report", self._sound(), ctypes.byref(text))
+        try:
+            return json.loads(ctypes.string_at(text))
+        finally:
+            free(text)
 
     def __repr__(self) -> str:
         return f"<merlin.Maps {self.height} x {self.width} by {self.model_name}>"
@@ -209,12 +223,23 @@ class Maps:
         from .relighting import Relighter
         return Relighter(self, side, by=by, model=model)
 
+    def mesh(self, side: int = 0, texture_side: int = 0) -> Mesh:
+        """The object's front as triangles, about (0, 0, -1). side: of the square around the object, in vertices; 0:
+        512. texture_side: of the textures, in pixels; 0: 2048. Neither is larger than the square in the photograph."""
+        return mesh.of_maps(self, side, texture_side)
+
     # ---- files ----
 
-    def save(self, folder: PathLike, *, model: "Optional[Model]" = None) -> None:
+    def save(self, folder: PathLike, *, model: "Optional[Model]" = None, last: bool = False,
+             progress: Optional[ProgressCallback] = None, stop: Optional[StopCallback] = None) -> None:
         """Writes maps.exr, the PNGs, overview.png and report.json into a folder, which is made if need be: all of them
-        or, after a failure, none. WrongUseError for maps without a reconstruction, such as loaded ones."""
-        check("maps_write", self._lighting_model(model)._handle.struct, self._sound(), None, path_bytes(folder))
+        or, after a failure, none. WrongUseError for maps without a reconstruction, such as loaded ones. last,
+        progress and stop: as of Model.estimate."""
+        params = h.WriteParams(last=int(last))
+        watch = Watch(progress, stop)
+        watch.put(params)
+        watch.check("maps_write", self._lighting_model(model)._handle.struct, self._sound(), ctypes.byref(params),
+                    path_bytes(folder))
 
     @classmethod
     def load(cls, folder: PathLike, *, model: "Optional[Model]" = None) -> "Maps":

@@ -5,6 +5,9 @@ import re
 import shutil
 import warnings
 
+import numpy as np
+import pytest
+
 import merlin
 
 
@@ -16,19 +19,40 @@ def blocks(path):
     return [block for block in code if not re.match(r"\s*(sudo|python3|env/|pip)", block)]
 
 
-def test_the_pages_programs_run(source, demo, tmp_path, monkeypatch):
-    """In their order, on a small photograph."""
-    color, alpha = merlin.read_image(demo)
+@pytest.fixture
+def quick_estimates(tmp_path, monkeypatch):
+    """In a folder of their own."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(merlin.Model.estimate, "__kwdefaults__",
                         {**merlin.Model.estimate.__kwdefaults__, "size": 64, "views": 1})
+
+
+def run(program, name, names):
+    """Without warnings."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        exec(compile(program, name, "exec"), names)
+
+
+def test_the_example_makes_its_pictures(source, quick_estimates):
+    """Each of the photographs' in its place."""
+    path = os.path.join(source, "examples", "photo_to_maps.py")
+    with open(path, encoding="utf-8") as file:
+        run(file.read(), path, {"__file__": path})
+    whole, _alpha = merlin.read_image("maps.png")
+    photo, _mask = merlin.read_image(os.path.join(source, "examples", "demo.png"))
+    assert whole.shape == (4 * 528, 4 * 528, 3) and np.abs(whole[8:520, 8:520] - photo).mean() < 0.01
+    assert os.path.exists("lamp.png")
+
+
+def test_the_pages_programs_run(source, demo, quick_estimates):
+    """In their order, on a small photograph."""
+    color, alpha = merlin.read_image(demo)
     shutil.copy(demo, "photo.jpg")
     programs = blocks(os.path.join(source, "docs", "python.md"))
     assert len(programs) == 5 and color.shape[:2] == alpha.shape
     names = {}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        for program in programs:
-            exec(compile(program, "docs/python.md", "exec"), names)
+    for program in programs:
+        run(program, "docs/python.md", names)
     assert {"photo.merlin", "relit.png", "viewer.html", "surface.glb"} <= set(os.listdir("."))
     assert len(names["pictures"]) == 5

@@ -163,6 +163,43 @@ def test_maps_are_saved_and_loaded(kept_maps, tmp_path):
         kept_maps.save("/proc/merlin")
 
 
+def test_maps_become_a_mesh(kept_maps, tmp_path):
+    """Of arrays, which are written as they are changed."""
+    mesh = kept_maps.mesh(side=64)
+    count, faces = len(mesh.vertices), len(mesh.faces)
+    assert mesh.vertices.shape == mesh.normals.shape == mesh.colors.shape == (count, 3) and mesh.uvs.shape == (count, 2)
+    assert mesh.faces.shape == (faces, 3) and mesh.faces.dtype == np.uint32 and mesh.faces.max() < count
+    a, b, c = (mesh.vertices[mesh.faces[:, i]] for i in range(3))
+    assert (np.cross(b - a, c - a) * -a).sum(axis=1).min() > -1e-6  # they face the camera
+    np.testing.assert_allclose(np.linalg.norm(mesh.normals, axis=1), 1, atol=1e-3)
+    assert np.abs(mesh.vertices.mean(axis=0) - [0, 0, -1]).max() < 0.3
+    mesh.colors[...] = 0.25
+    written = mesh.save(tmp_path / "a.obj")
+    assert {path.rsplit(".", 1)[1] for path in written} == {"obj", "mtl", "png"}
+    mesh.faces[0, 0] = count
+    with pytest.raises(merlin.WrongUseError, match=f"names vertex {count}"):
+        mesh.save(tmp_path / "b.ply")
+    vertices = mesh.vertices
+    del mesh
+    assert vertices.shape == (count, 3) and np.isfinite(vertices).all()
+    with pytest.raises(merlin.WrongUseError):
+        kept_maps.mesh(side=-5)
+
+
+def test_maps_report_what_was_done(kept_maps, tmp_path):
+    """As report.json does, and with words for the light."""
+    report = kept_maps.report()
+    assert report["model"] == "merlin-any" and report["width"] == kept_maps.width
+    assert [one["code"] for one in report["warnings"]] == [one.code for one in kept_maps.doubts]
+    assert kept_maps.light_words == report["light"]["words"] != ""
+    told = []
+    kept_maps.save(tmp_path / "maps", progress=lambda stage, share: told.append(stage))
+    assert "writing" in told
+    with pytest.raises(merlin.StoppedError):
+        kept_maps.save(tmp_path / "stopped", stop=lambda: True)
+    assert not (tmp_path / "stopped").exists()
+
+
 def test_a_page_is_written(kept_maps, tmp_path):
     """One file."""
     kept_maps.view(tmp_path / "viewer.html", name="cup", side=64)

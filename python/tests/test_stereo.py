@@ -78,10 +78,12 @@ def test_a_surface_is_a_mesh_file(sphere, tmp_path):
     """By its ending."""
     lights, pictures, _normal, inside = sphere
     surface = merlin.stereo(list(pictures), lights, mask=inside)
-    surface.save(tmp_path / "ball.ply")
+    mesh = surface.mesh()
+    assert mesh.save(tmp_path / "ball.ply") == [str(tmp_path / "ball.ply")]
     assert (tmp_path / "ball.ply").read_bytes().startswith(b"ply")
-    with pytest.raises(ValueError):
-        surface.save(tmp_path / "ball.xyz")
+    assert abs(len(mesh.vertices) - inside.sum()) < 0.1 * inside.sum() and mesh.faces.max() < len(mesh.vertices)
+    with pytest.raises(merlin.WrongUseError):
+        mesh.save(tmp_path / "ball.xyz")
 
 
 WRONG = {

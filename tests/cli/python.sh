@@ -26,6 +26,7 @@ MERLIN_LIBRARY=$library "$python" -m pytest -q "$MERLIN_SOURCE_DIR/python" || co
 echo "the wheel is built without a network and is of this machine and of any Python 3"
 mkdir "$scratch/checkout" && cd "$scratch/checkout" || exit 1
 cp -r "$MERLIN_SOURCE_DIR"/{python,models,CMakeLists.txt,LICENSE} . # building writes beside the sources
+mkdir -p python/build/lib.linux-x86_64-cpython-311/merlin/lib && touch "$_/stale"
 MERLIN_LIBRARY=$library "$python" -m pip wheel -q --no-index --no-deps --no-build-isolation --disable-pip-version-check \
     -w "$scratch" ./python >wheel.log 2>&1 || complain "no wheel: $(cat wheel.log)"
 wheel=("$scratch"/libmerlin-*-py3-none-linux_"$(uname -m)".whl)
@@ -34,6 +35,7 @@ present "${wheel[0]}"
 for name in lib/libmerlin.so lib/needs.txt models/merlin-{any,point,env}.safetensors py.typed; do
     grep -q "^merlin/$name " listed || complain "there is no $name in it"
 done
+grep -q stale listed && complain "it holds what an earlier build has left"
 
 echo "installed into an environment it needs nothing of the checkout"
 "$python" -m venv --without-pip --system-site-packages "$scratch/env"
