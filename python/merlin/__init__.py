@@ -23,10 +23,12 @@ from .calibration import Calibration, calibrate
 from .capture import Capture, Light, Surface, stereo
 from .errors import (BadInputError, CannotWriteError, DeviceError, MerlinError, MerlinWarning, MissingFileError,
                      NoMemoryError, StoppedError, WrongUseError)
+from .exporting import Exported
 from .maps import Maps, Mended
 from .mesh import Mesh
 from .model import FoundObject, Model, estimate, find_object, read_shot
-from .pictures import read_image, read_mask, to_pixels, write_image
+from .pictures import encode_image, read_image, read_mask, resize_image, to_pixels, write_animation, write_image
+from .pictures import write_mask, write_sheet
 from .relighting import Environment, Relighter
 from .results import Camera, Circle, Crop, FoundLight, Notice, Shot, SkippedFile
 from .weights import Tensor, Weights
@@ -47,8 +49,9 @@ def version() -> str:
 
 __all__ = [
     "BadInputError", "Calibration", "Camera", "CannotWriteError", "Capture", "Circle", "Crop", "DeviceError",
-    "Environment", "FoundLight", "FoundObject", "Light", "Maps", "Mended", "MerlinError", "MerlinWarning",
-    "Mesh", "MissingFileError", "Model", "NoMemoryError", "Notice", "Relighter", "Shot", "SkippedFile", "StoppedError",
-    "Surface", "Tensor", "Weights", "WrongUseError", "calibrate", "estimate", "find_object", "read_image", "read_mask", "read_shot",
-    "set_threads", "stereo", "to_pixels", "version", "write_image",
+    "Environment", "Exported", "FoundLight", "FoundObject", "Light", "Maps", "Mended", "MerlinError", "MerlinWarning",
+    "Mesh", "MissingFileError", "Model", "NoMemoryError", "Notice", "Relighter", "Shot", "SkippedFile",
+    "StoppedError", "Surface", "Tensor", "Weights", "WrongUseError", "calibrate", "encode_image", "estimate",
+    "find_object", "read_image", "read_mask", "read_shot", "resize_image", "set_threads", "stereo", "to_pixels",
+    "version", "write_animation", "write_image", "write_mask", "write_sheet",
 ]

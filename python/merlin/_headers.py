@@ -122,6 +122,15 @@ Calibration = _struct("calibration", [
     ("names", POINTER(c_char_p)), ("lights", POINTER(Light)), ("highlights", POINTER(Circle)),
     ("residuals", POINTER(c_float)), ("warnings", Warnings), ("skipped", SkippedFiles), ("brightest", Image)])
 
+# ---- export.h ----
+
+EXPORT_NAMES = ("ALBEDO", "NORMAL", "ROUGHNESS", "SMOOTHNESS", "OCCLUSION", "ORM", "HEIGHT", "HEIGHT_FLOAT", "ALPHA",
+                "MATERIALX")
+EXPORT_ALL = (1 << len(EXPORT_NAMES)) - 1
+EXPORT_SIDE, EXPORT_LEAST_SIDE, EXPORT_MOST_SIDE = 2048, 64, 8192
+ExportParams = _struct("export_params", [("maps", c_uint), ("normal_down", c_int), ("side", c_int)])
+ExportFacts = _struct("export_facts", [("side", c_int), ("relief", c_float), ("width", c_float)])
+
 # ---- mesh.h ----
 
 Mesh = _struct("mesh", [
@@ -187,6 +196,8 @@ FUNCTIONS: Dict[str, Tuple[Any, List[Any]]] = {
     "maps_warnings": (None, [_at(Maps), _at(Warnings)]),
     "maps_write": (c_int, [_handle, _at(Maps), _at(WriteParams), c_char_p]),
     "maps_report": (c_int, [_at(Maps), POINTER(c_void_p)]),
+    "maps_export": (c_int, [_at(Maps), _at(ExportParams), c_char_p, _at(ExportFacts), _at(Files)]),
+    "maps_occlusion": (c_int, [_at(Maps), c_int, _at(Image)]),
     "maps_read": (c_int, [c_char_p, _at(Maps)]),
     "maps_look": (c_int, [c_char_p, POINTER(c_int)]),
     "shot_read": (c_int, [c_char_p, _at(Shot)]),

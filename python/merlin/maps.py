@@ -5,12 +5,12 @@ from __future__ import annotations
 import ctypes
 import json
 import os
-from typing import TYPE_CHECKING, Any, Dict, NamedTuple, Optional, Tuple, Union
+from typing import TYPE_CHECKING, Any, Dict, Iterable, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
 from . import _headers as h
-from . import mesh
+from . import exporting, mesh
 from ._call import Owner, ProgressCallback, StopCallback, Watch, call, check, free, optional_path, path_bytes
 from ._call import view, whole
 from .errors import WrongUseError
@@ -240,6 +240,21 @@ class Maps:
         watch.put(params)
         watch.check("maps_write", self._lighting_model(model)._handle.struct, self._sound(), ctypes.byref(params),
                     path_bytes(folder))
+
+    def export(self, folder: PathLike, maps: Optional[Iterable[str]] = None, *, normal_y: str = "up",
+               side: int = 0) -> exporting.Exported:
+        """Writes the square around the object as other programs read it, and export.json, into a folder.
+
+        maps: any of "albedo", "normal", "roughness", "smoothness", "occlusion", "orm", "height", "height_float",
+        "alpha", "materialx" and "all"; None: albedo, normal, roughness, occlusion, height and alpha. normal_y: "up"
+        (OpenGL, Unity, Blender) or "down" (DirectX, Unreal). side: pixels a side, 64 to 8192; 0: the square's in the
+        photograph, at most 2048."""
+        return exporting.export(self, folder, maps, normal_y, side)
+
+    def occlusion(self, side: int) -> np.ndarray:
+        """Ambient occlusion of the square around the object: side x side in [0, 1], 1 beside the object; the share,
+        weighted by the cosine, of the directions about a point's normal that the object leaves open."""
+        return exporting.occlusion(self, side)
 
     @classmethod
     def load(cls, folder: PathLike, *, model: "Optional[Model]" = None) -> "Maps":

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import ctypes
 import os
-from typing import Any, Optional, Tuple, Union
+from typing import Any, Iterable, Mapping, Optional, Tuple, Union
 
 import numpy as np
 
 from . import _headers as h
-from ._call import Owner, check, is_path, path_bytes, view
+from ._call import Owner, check, choice, free, is_path, path_bytes, view, whole
 from .errors import WrongUseError
 
 PathLike = Union[str, bytes, "os.PathLike[Any]"]
@@ -168,3 +168,52 @@ def to_pixels(image: np.ndarray, dtype: Any = np.uint8, *, linear: bool = False,
     check("image_to_pixels", ctypes.byref(struct), None if cover is None else ctypes.byref(cover[0]),
           ctypes.byref(layout), out.ctypes.data_as(ctypes.c_void_p))
     return out
+
+
+def resize_image(image: np.ndarray, width: int, height: int) -> np.ndarray:
+    """Resizes linear floats, H x W or H x W x 3, by Lanczos where it enlarges, by area where it shrinks."""
+    struct, _kept = image_for(image)
+    out = new_image()
+    check("image_resize", ctypes.byref(struct), whole(width, "width"), whole(height, "height"), out.at)
+    return view(out, out.struct)
+
+
+def encode_image(image: np.ndarray, kind: str = "png") -> bytes:
+    """The bytes of a "png" or a "jpeg" file of 8-bit sRGB, of linear floats, H x W x 3, clamped to [0, 1]."""
+    struct, _kept = image_for(image)
+    made, size = ctypes.c_void_p(), ctypes.c_size_t()
+    check("image_encode", ctypes.byref(struct), choice(kind, {"png": h.PNG, "jpeg": h.JPEG}, "kind"),
+          ctypes.byref(made), ctypes.byref(size))
+    try:
+        return ctypes.string_at(made, size.value)
+    finally:
+        free(made)
+
+
+def write_mask(path: PathLike, mask: np.ndarray) -> None:
+    """Writes a mask, or other numbers in [0, 1], H x W or H x W x 3, as 8-bit values without the curve of sRGB; path
+    ends in .png or .webp."""
+    struct, _kept = image_for(np.asarray(mask, dtype=np.float32), "a mask")
+    check("mask_write", ctypes.byref(struct), path_bytes(path))
+
+
+def write_sheet(path: PathLike, pictures: Mapping[str, np.ndarray], *, columns: int = 4, side: int = 256) -> None:
+    """Writes pictures, linear floats by their labels, in rows on dark grey, each side x side pixels, as a PNG."""
+    images = [image_for(picture) for picture in pictures.values()]
+    tiles = (h.Tile * max(len(images), 1))(*(
+        h.Tile(label.encode(), ctypes.pointer(image)) for label, (image, _kept) in zip(pictures, images)))
+    check("sheet_write", tiles, len(images), min(whole(columns, "columns"), max(len(images), 1)), whole(side, "side"),
+          path_bytes(path))
+
+
+def write_animation(path: PathLike, frames: Iterable[np.ndarray], *, milliseconds: int = 125) -> None:
+    """Writes frames, linear floats, H x W x 3, all alike, as an animation that repeats for ever, each shown for so many
+    milliseconds; path ends in .webp or .gif."""
+    images = [image_for(frame, "a frame") for frame in frames]
+    if not images:
+        raise WrongUseError("an animation has one frame at least")
+    made = Owner(ctypes.c_void_p(), "animation_free")
+    check("animation_new", images[0][0].width, images[0][0].height, len(images), made.at)
+    for image, _kept in images:
+        check("animation_add", made.struct, ctypes.byref(image))
+    check("animation_write", made.struct, path_bytes(path), whole(milliseconds, "milliseconds"))

@@ -184,6 +184,25 @@ def test_a_picture_is_written_and_read(tmp_path):
         merlin.write_image(tmp_path / "missing" / "a.png", image)
 
 
+def test_pictures_for_people_are_written(tmp_path):
+    """Sheets, animations, bytes, masks."""
+    image = np.random.default_rng(3).random((20, 30, 3))
+    assert merlin.encode_image(image).startswith(b"\x89PNG") and merlin.encode_image(image, "jpeg")[:2] == b"\xff\xd8"
+    assert merlin.resize_image(image, 15, 10).shape == (10, 15, 3)
+    merlin.write_sheet(tmp_path / "sheet.png", {"left": image, "grey": image[:, :, 0]}, side=64)
+    assert merlin.read_image(tmp_path / "sheet.png")[0].shape[1] > 2 * 64
+    merlin.write_animation(tmp_path / "a.webp", [image, image[::-1]])
+    assert (tmp_path / "a.webp").read_bytes()[8:12] == b"WEBP"
+    merlin.write_mask(tmp_path / "mask.png", image[:, :, 0] > 0.5)
+    np.testing.assert_array_equal(merlin.read_mask(tmp_path / "mask.png"), image[:, :, 0] > 0.5)
+    for wrong in (lambda: merlin.write_animation(tmp_path / "b.gif", []), lambda: merlin.encode_image(image, "bmp"),
+                  lambda: merlin.write_animation(tmp_path / "b.gif", [image, image[1:]]),
+                  lambda: merlin.write_sheet(tmp_path / "s.png", {}), lambda: merlin.resize_image(image, 0, 4)):
+        with pytest.raises(ValueError):
+            wrong()
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["a.webp", "mask.png", "sheet.png"]
+
+
 def test_an_array_keeps_the_librarys_memory_alive(demo):
     """It is a view, and frees what it shows when it goes."""
     color, _alpha = pictures.from_file(demo)

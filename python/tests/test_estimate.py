@@ -186,6 +186,21 @@ def test_maps_become_a_mesh(kept_maps, tmp_path):
         kept_maps.mesh(side=-5)
 
 
+def test_maps_are_exported(kept_maps, tmp_path):
+    """By their names."""
+    done = kept_maps.export(tmp_path / "usual")
+    assert {"albedo.png", "normal.png", "export.json"} <= {path.rsplit("/", 1)[1] for path in done.files}
+    assert done.side > 0 and done.relief > 0 and done.width > 0
+    done = kept_maps.export(tmp_path / "unreal", ["orm", "normal"], normal_y="down", side=64)
+    assert done.side == 64 and (tmp_path / "unreal" / "orm.png").exists()
+    shade = kept_maps.occlusion(64)
+    assert shade.shape == (64, 64) and 0 <= shade.min() < 1 == shade.max()
+    for wrong in ({"maps": ["gloss"]}, {"normal_y": "left"}, {"side": 7}, {"maps": "materialx", "normal_y": "down"}):
+        with pytest.raises(ValueError):
+            kept_maps.export(tmp_path / "wrong", **wrong)
+    assert not (tmp_path / "wrong").exists()
+
+
 def test_maps_report_what_was_done(kept_maps, tmp_path):
     """As report.json does, and with words for the light."""
     report = kept_maps.report()

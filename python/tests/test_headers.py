@@ -33,6 +33,7 @@ def constants():
     """C's name and the value of every constant of the binding."""
     found = {"MERLIN_" + name: value for name, value in vars(h).items() if name.isupper() and isinstance(value, int)}
     found.update({"MERLIN_DOUBT_" + name: 1 << bit for bit, name in enumerate(h.DOUBTS)})
+    found.update({"MERLIN_EXPORT_" + name: 1 << bit for bit, name in enumerate(h.EXPORT_NAMES)})
     return found
 
 
