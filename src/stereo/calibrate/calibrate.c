@@ -19,7 +19,7 @@ static float grey(const uint16_t *pixel, int channels)
     return sum / (65535 * (float)channels);
 }
 
-/* Clipped as a whole where one channel is: the mean of the others and of what is left of it is no shading. */
+/* Returns the mean over channels; fully saturated if one channel is, as a mean with a clipped channel is no shading. */
 static float shading(const uint16_t *pixel, int channels)
 {
     for (int k = 0; k < channels; k++)
@@ -43,7 +43,7 @@ static status find_brightest(const merlin_capture *c, img *out)
     return s;
 }
 
-/* 3 x 3 binomial means of one channel; the border stays as it is. */
+/* Smooths one channel by 3 × 3 binomial means; the border is unchanged. */
 static status smooth(img *p)
 {
     img from;
@@ -61,7 +61,8 @@ static status smooth(img *p)
     return OK;
 }
 
-/* What the outline is searched in: the logarithm, so that a dark ball before a darker room has an edge as well. */
+/* Makes the picture in which the outline is searched: the logarithm, so that a dark ball in front of a darker room has
+ * an edge as well. */
 static status outline_picture(const img *brightest, img *out)
 {
     static const float NOISE = 0.002f;
@@ -76,7 +77,7 @@ static status outline_picture(const img *brightest, img *out)
     return s == OK ? smooth(out) : s;
 }
 
-/* As it is without its highlights, which move. */
+/* Finds each pixel's darkest value, without the highlights, which move. */
 static status find_darkest(const merlin_capture *c, img *out)
 {
     img darkest;
@@ -101,7 +102,7 @@ static status search_outlines(const merlin_capture *c, merlin_ball ball, const i
     return s;
 }
 
-/* The outline of the mask, or the picture to search in, and what may be outlines there. */
+/* Finds the outline of the mask, or the picture to search in and its candidate outlines. */
 static status find_outlines(const char *folder, const merlin_calibrate_params *options, const merlin_capture *c,
                             merlin_calibration *out, img *picture, ball_outlines *outlines)
 {
@@ -123,7 +124,7 @@ static status find_outlines(const char *folder, const merlin_calibrate_params *o
     return s;
 }
 
-/* What every picture has, such as a window that mirrors in the ball; zero for fewer than three pictures. */
+/* Finds what every picture contains, such as a window's reflection in the ball; zero for fewer than three pictures. */
 static void find_constant(const merlin_capture *c, img *constant)
 {
     for (int i = 0; i < c->count && c->count > 2; i++)
@@ -133,7 +134,7 @@ static void find_constant(const merlin_capture *c, img *constant)
         }
 }
 
-/* What a picture has beyond the constant; what is clipped stays that. */
+/* Subtracts the constant part from a picture; clipped values stay clipped. */
 static status take_picture(const merlin_capture *c, int i, merlin_ball ball, const img *constant, img *out)
 {
     status s = img_new(out, c->width, c->height, 1);
@@ -145,8 +146,8 @@ static status take_picture(const merlin_capture *c, int i, merlin_ball ball, con
     return s;
 }
 
-/* What a room adds to every picture of a matte ball, by the sides that the lights found so far do not reach: the median
- * over pictures, for where a light is beside the camera no such side is seen. */
+/* Finds the light of the room in every picture of a matte ball, from the sides that the lights found so far do not
+ * reach: the median over pictures, as no such side is visible if a light is near the camera. */
 static status find_room(const merlin_capture *c, const ball_view *view, const merlin_calibration *found, img *constant)
 {
     float *level = malloc((size_t)c->count * sizeof *level);
@@ -202,7 +203,7 @@ static status reserve(int count, merlin_calibration *out)
     return out->lights && (out->highlights || out->residuals) ? OK : fail(MERLIN_NO_MEMORY, "no memory for lights");
 }
 
-/* All lights by one outline. */
+/* Finds all lights for one outline. */
 static status calibrate_by(const merlin_capture *c, const img *picture, merlin_calibration *out)
 {
     img constant = {0};
@@ -218,7 +219,7 @@ static status calibrate_by(const merlin_capture *c, const img *picture, merlin_c
     return s;
 }
 
-/* ---- which outline ---- */
+/* ---- choice of the outline ---- */
 
 static float mean_residual(const merlin_calibration *c)
 {
@@ -236,7 +237,8 @@ static int lights_behind(const merlin_calibration *c)
     return count;
 }
 
-/* Another outline than the likelier one before: a matte ball's has the shading of one, a mirror's no lights behind. */
+/* Tells whether a less likely outline is better than the best so far: a matte ball's shading must fit, a mirror ball's
+ * lights must not be behind it. */
 static bool is_better(const merlin_calibration *trial, const merlin_calibration *best)
 {
     static const float CLEARLY = 0.8f;
@@ -259,7 +261,7 @@ static void take_lights(merlin_calibration *from, merlin_calibration *to)
     from->residuals = NULL;
 }
 
-/* The first outline's failure is the one that is told. */
+/* Chooses an outline; if all fail, the first one's error is reported. */
 static status choose_outline(const merlin_capture *c, const img *picture, ball_outlines *outlines,
                              merlin_calibration *out, int *chosen)
 {
@@ -283,13 +285,13 @@ static status choose_outline(const merlin_capture *c, const img *picture, ball_o
     return *chosen >= 0 ? OK : fail(first, "%s", words);
 }
 
-/* An inner circle of this size is the horizon that a mirror ball has of a wide table. */
+/* Tells whether an inner circle of this size is the horizon of a wide table in a mirror ball. */
 static bool is_horizon(float ratio)
 {
     return ratio > 0.67f && ratio < 0.74f;
 }
 
-/* Tells whether it is decided which of two circles, one within the other, the ball is. */
+/* Tells whether the choice between two nested circles is certain. */
 static bool is_decided(const ball_outlines *outlines, merlin_ball ball, int chosen)
 {
     static const float CLEARLY = 0.6f;

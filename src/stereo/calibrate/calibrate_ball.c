@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The ball's outline: edges with their directions vote for circles by random sampling (Fischler & Bolles 1981), two
- * edges and their normals making a circle; the one seen all the way round wins and is refined by least squares. */
+/* Finds the ball's outline: edges with their directions vote for circles by random sampling (Fischler & Bolles 1981),
+ * where two edges and their normals define a circle; the circle with edges all around is chosen and refined by least
+ * squares. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,11 +11,11 @@
 
 enum { MOST_EDGES = 4000, LEAST_EDGES = 24, TRIES = 8000, BINS = 72, REFINEMENTS = 12 };
 
-static const float LEAST_RADIUS = 8;    /* pixels: below, normals are too coarse to calibrate with */
+static const float LEAST_RADIUS = 8;    /* pixels: below, normals are too inaccurate for calibration */
 static const float NEAR_CIRCLE = 1.5f;  /* pixels */
 static const float ALONG_RADIUS = 0.9f; /* cosine between an edge's normal and the radius */
-static const float LEAST_SEEN = 0.3f;   /* of the outline */
-static const float PLAINLY_SEEN = 0.8f; /* of one that is no more than second best */
+static const float LEAST_SEEN = 0.3f;   /* share of the outline */
+static const float PLAINLY_SEEN = 0.8f; /* the same for a circle that is only the second best */
 
 typedef struct edge {
     float x, y, nx, ny, strength;
@@ -44,7 +45,7 @@ static int stronger_first(const void *a, const void *b)
     return (x < y) - (x > y);
 }
 
-/* strength: gradient magnitudes. A pixel is an edge where it is strongest across the edge. */
+/* Tells whether a pixel is an edge: whether strength, the gradient's magnitude, is largest there across the edge. */
 static bool is_ridge(const img *strength, int x, int y, float nx, float ny)
 {
     int dx = (int)lroundf(nx), dy = (int)lroundf(ny);
@@ -86,7 +87,7 @@ static status find_edges(const img *picture, size_t most, edges *out)
     return OK;
 }
 
-/* Where the normals of two edges meet, if it is as far from both. */
+/* Computes the circle around the intersection of two edges' normals, if that is equally far from both. */
 static bool circle_through(const edge *a, const edge *b, merlin_circle *out)
 {
     float det = a->ny * b->nx - a->nx * b->ny, dx = b->x - a->x, dy = b->y - a->y;
@@ -107,8 +108,8 @@ static bool is_near(const edge *e, const merlin_circle *c, float width, float *d
     return fabsf(*distance) < width && fabsf(*cosine) > ALONG_RADIUS;
 }
 
-/* The share of the outline where an edge lies on the circle; edges against the common sense (bright inside or outside)
- * count half. */
+/* Returns the share of the outline where an edge lies on the circle; edges of the less frequent polarity (bright inside
+ * or outside) count half. */
 static float share_seen(const edges *e, const merlin_circle *c)
 {
     unsigned char seen[2][BINS] = {{0}};
@@ -127,7 +128,7 @@ static float share_seen(const edges *e, const merlin_circle *c)
     return ((float)more + 0.5f * (float)less) / BINS;
 }
 
-/* Gauss-Newton on the distance to the circle; the 3 x 3 system by Cramer's rule. */
+/* Makes a Gauss-Newton step on the distance to the circle; the 3 × 3 system is solved by Cramer's rule. */
 static void refine_once(const edges *e, float width, merlin_circle *c)
 {
     double m[6] = {0}, v[3] = {0};
@@ -171,7 +172,7 @@ static float sample_circles(const edges *e, const img *picture, merlin_circle *b
     return most;
 }
 
-/* Without those of another ball, what is about it included. */
+/* Removes the edges of another ball and its surroundings. */
 static void keep_beside(edges *e, const merlin_circle *other)
 {
     static const float ABOUT = 1.1f; /* radii */
@@ -206,7 +207,7 @@ status ball_share_seen(const img *picture, const merlin_circle *circle, float *s
     return OK;
 }
 
-/* Keeps those near the circle alone, so that stronger ones elsewhere take no room. */
+/* Keeps only edges near the circle, so that stronger ones elsewhere take no room. */
 static void keep_near(edges *e, const merlin_circle *c)
 {
     size_t kept = 0;
@@ -282,7 +283,8 @@ static edge turned_edge(const turn *t, const edge *from)
     return e;
 }
 
-/* Beside the axis the outline is an ellipse, and not about the ball's center; a camera turned to that sees a circle. */
+/* Finds the ball's centre. Away from the optical axis the outline is an ellipse, whose centre is not the ball's; a
+ * camera turned toward the ball sees a circle. */
 static vec3 center_of(const edges *e, edges *turned, const pinhole *camera, const merlin_circle *circle)
 {
     enum { ROUNDS = 4 };

@@ -1,17 +1,19 @@
 /* SPDX-License-Identifier: MIT */
-/* Doubts that a calibration fits its pictures: the shading may be no matte ball's, the mask no ball's. */
+/* Warnings that a calibration does not fit its pictures: the shading may not be a matte ball's, the mask not a ball's.
+ */
 #include <math.h>
 
 #include "stereo/calibrate/calibrate_parts.h"
 
-/* The share of the light, root mean square, that shading leaves unexplained: of balls of paint 0.004 to 0.04; a third
- * of a radius beside the ball, or of a mirror for a matte one, 0.07 to 0.2; of sRGB's tones for linear ones 0.13. */
+/* Limit of the root-mean-square residual of shading as a share of the light: painted balls have 0.004 to 0.04; a circle
+ * displaced by a third of a radius, or a mirror ball taken for a matte one, 0.07 to 0.2; sRGB taken for linear 0.13. */
 static const float UNLIKE = 0.055f;
-/* The overlap of a mask and the circle fitted to its edge, below which it is no disc: a square has 0.82. */
+/* Least overlap of a mask with the circle fitted to its edge; a square has 0.82. */
 static const float ROUND = 0.9f;
-/* Shares of two circles along which the pictures have an edge. */
+/* Shares of two circles along which the pictures have an edge: at most for the wrong one, at least for the right one.
+ */
 static const float HARDLY = 0.2f, PLAINLY = 0.8f;
-/* The share of a radius from which on two circles are different ones. */
+/* Distance in radii from which on two circles are different. */
 static const float ELSEWHERE = 0.08f;
 
 static void check_shading(merlin_calibration *c)
@@ -33,7 +35,7 @@ static bool is_within(const merlin_circle *c, int x, int y)
     return hypotf((float)x + 0.5f - c->x, (float)y + 0.5f - c->y) < c->radius;
 }
 
-/* Returns the share that both cover of all that either does. The mask may be white on the ball or beside it. */
+/* Returns the intersection over union. The mask may be white on the ball or outside it. */
 static double overlap(const img *mask, const merlin_circle *c)
 {
     size_t both = 0, either = 0, other_both = 0, other_either = 0;
@@ -53,7 +55,7 @@ static bool is_elsewhere(const merlin_circle *a, const merlin_circle *b)
     return hypotf(a->x - b->x, a->y - b->y) + fabsf(a->radius - b->radius) > ELSEWHERE * a->radius;
 }
 
-/* Doubts the mask's circle where another is plainly seen and it is not. */
+/* Warns about the mask's circle if another one is plainly visible and it is not. */
 static status check_place(const img *outlines, merlin_calibration *c)
 {
     merlin_circle seen;

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* One light from one picture of a ball: the mirror direction of a chrome ball's highlight, or the least-squares light
- * of a matte ball's shading. */
+/* Finds one light from one picture of a ball: the mirror direction of a chrome ball's highlight, or the least-squares
+ * light of a matte ball's shading. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "stereo/calibrate/calibrate_parts.h"
 
-static const float INSIDE = 0.97f; /* of the radius: the rim mirrors the world behind and mixes with the background */
+static const float INSIDE =
+    0.97f; /* share of the radius: the rim mirrors what is behind the ball and mixes with the background */
 
 /* ---- chrome ---- */
 
@@ -15,7 +16,7 @@ typedef struct blob {
     size_t area;
 } blob;
 
-/* The normal of a pixel that is not too near the outline. */
+/* Computes the normal of a pixel that is not too near the outline. */
 static bool normal_inside(const ball_view *view, int x, int y, float share, vec3 *n)
 {
     vec3 v;
@@ -56,7 +57,7 @@ static void visit(flood *f, int at, size_t *depth, blob *b)
     f->stack[(*depth)++] = at;
 }
 
-/* The connected patch above the level around a pixel. */
+/* Collects the connected patch above the level around a pixel. */
 static blob grow(flood *f, int start)
 {
     blob b = {0};
@@ -76,7 +77,7 @@ static float apart(const blob *a, const blob *b)
     return (float)hypot(a->x / a->sum - b->x / b->sum, a->y / a->sum - b->y / b->sum);
 }
 
-/* The patches of a ball that are above a level. */
+/* The patches of a ball above a level. */
 typedef struct blobs {
     blob *at;
     size_t count;
@@ -90,7 +91,7 @@ static const blob *strongest(const blobs *all)
     return most;
 }
 
-/* The strongest patch's share of all that lie a good way from it and its own: panes of one lamp count as one. */
+/* Returns the strongest patch's share of the sum of itself and all distant ones: panes of one window count as one. */
 static double share_of(const blob *b, const blobs *all, float away)
 {
     double others = 0;
@@ -129,10 +130,11 @@ static status find_blobs(const img *p, const ball_view *view, float level, blobs
 
 status ball_mirror_light(const img *picture, const ball_view *view, merlin_circle *highlight, vec3 *direction)
 {
-    static const float LEVEL = 0.5f;        /* of the peak */
-    static const float LEAST_PEAK = 0.004f; /* of full scale: an 8-bit step */
-    static const float PANES = 0.2f;        /* of the radius: some 23 degrees between lights */
-    /* Noise, where the light failed or mirrors beside the picture, has 0.01 to 0.02; a second lamp as bright 0.5. */
+    static const float LEVEL = 0.5f;        /* share of the peak */
+    static const float LEAST_PEAK = 0.004f; /* share of full scale: an 8-bit step */
+    static const float PANES = 0.2f;        /* share of the radius: about 23 degrees between lights */
+    /* noise, if the light failed or its reflection is outside the picture, has 0.01 to 0.02; a second lamp of equal
+     * brightness 0.5 */
     static const double LEAST_SHARE = 0.55;
     float peak = brightest_inside(picture, view);
     if (!(peak > LEAST_PEAK)) return fail(MERLIN_BAD_INPUT, "no highlight on the ball");
@@ -175,7 +177,7 @@ static size_t collect_shades(const img *p, const ball_view *view, shade *out)
     return count;
 }
 
-/* Least squares of value = light · normal over the shades in use; false if they do not span space. */
+/* Solves value = light · normal by least squares over the shades in use; returns false if they do not span space. */
 static bool solve_light(const shade *at, size_t count, vec3 *light)
 {
     double m[6] = {0}, v[3] = {0};
@@ -194,10 +196,11 @@ static bool solve_light(const shade *at, size_t count, vec3 *light)
     return true;
 }
 
-/* Uses what the light faces and explains; returns the root mean square of what was used, relative to the light. */
+/* Uses the shades that face the light and fit it; returns the root mean square of their residuals relative to the
+ * light. */
 static float select_lit(shade *at, size_t count, vec3 light, float spread)
 {
-    static const float GRAZING = 0.1f; /* cosine: below, roughness and penumbrae matter more than the light */
+    static const float GRAZING = 0.1f; /* cosine: below, roughness and penumbrae have more effect than the light */
     double sum = 0;
     size_t used = 0;
     float power = vec3_length(light);
@@ -247,7 +250,7 @@ status ball_shading_light(const img *picture, const ball_view *view, float *resi
 bool ball_dark_level(const img *picture, const ball_view *view, vec3 light, float *level)
 {
     enum { LEAST_SEEN = 50 };
-    static const float AWAY = -0.15f; /* cosine: nothing of a lamp's penumbra is there */
+    static const float AWAY = -0.15f; /* cosine: outside any lamp's penumbra */
     double sum = 0;
     size_t seen = 0;
     for (int y = 0; y < picture->height; y++)

@@ -1,28 +1,26 @@
 /* SPDX-License-Identifier: MIT */
-/* The outline of a mirror ball on a table. Its rim mirrors the table, its middle the room before it, and the edge
- * between these is a circle, too, and often the strongest in sight: of a large table straight behind the ball its
- * radius is the ball's by the root of two, of a small table it is more. So around a circle that was found another is
- * searched for, all along which the pictures step up, or down, sharply. */
+/* The outline of a mirror ball on a table. Its rim mirrors the table, its middle the room in front of it, and the edge
+ * between these is a circle, too, and often the strongest visible one: with a large table directly behind the ball its
+ * radius is the ball's divided by the square root of two, with a small table it is larger. So another circle is
+ * searched around one that was found, along all of which the pictures have a sharp step of one sign. */
 #include <math.h>
 
 #include "stereo/calibrate/calibrate_parts.h"
 
 enum { ANGLES = 96, RADII = 40, PLACES = 9, POLISH = 5 };
 
-/* Shares of the inner radius: how far out is searched, and how far aside the middle may be (the camera looks askance).
- */
+/* Limits in inner radii: of the search, and of the distance between centres (the camera looks obliquely). */
 static const float LARGEST = 1.62f, ASIDE = 0.2f;
-/* The mean of steps over their root mean square: 1 where all are alike, 0.1 to 0.3 on a table's grain. */
+/* Mean of steps divided by their root mean square: 1 if all are equal, 0.1 to 0.3 on a table's texture. */
 static const float LEAST_ALIKE = 0.6f;
-/* The mean step of a logarithm; and how much more it must be than that a little further in or out: else it is a halo.
- */
+/* Least mean step of the logarithm; and its least ratio to that slightly further in or out, otherwise it is a halo. */
 static const float LEAST_STEP = 0.03f, SHARPER = 1.6f;
-/* The share of the circle that must be in the picture. */
+/* Least share of the circle in the picture. */
 static const float LEAST_WITHIN = 0.45f;
 
 /* Steps across a circle from inside to outside. */
 typedef struct steps {
-    float mean, alike; /* over the circle; mean against root mean square */
+    float mean, alike; /* over the circle; mean divided by root mean square */
 } steps;
 
 static bool pixel_at(const img *p, float x, float y, float *value)
@@ -33,7 +31,7 @@ static bool pixel_at(const img *p, float x, float y, float *value)
     return true;
 }
 
-/* across: how far from the circle is looked, in pixels. */
+/* Measures the steps. across: distance from the circle in pixels. */
 static steps steps_across(const img *p, const merlin_circle *c, float across)
 {
     float sum = 0, squares = 0;
@@ -71,7 +69,7 @@ static void try_circle(const img *p, const merlin_circle *trial, float across, f
     *best = *trial;
 }
 
-/* The worthiest circle that has the inner one in it, not nearer than steps of that one's own edge reach. */
+/* Finds the best circle around the inner one, outside the range of steps at that one's own edge. */
 static float search(const img *p, const merlin_circle *inner, float across, merlin_circle *best)
 {
     float most = 0, reach = ASIDE * inner->radius;
@@ -88,7 +86,7 @@ static float search(const img *p, const merlin_circle *inner, float across, merl
     return most;
 }
 
-/* Uphill from the grid's best, by smaller and smaller moves. */
+/* Climbs from the grid's best circle by smaller and smaller moves. */
 static void polish(const img *p, const merlin_circle *inner, float across, float most, merlin_circle *best)
 {
     float move = 2 * ASIDE * inner->radius / (PLACES - 1);
@@ -110,7 +108,8 @@ static bool is_outline(const img *p, const merlin_circle *c, float across)
     in.radius -= 2 * across;
     out.radius += 2 * across;
     steps further_in = steps_across(p, &in, across), further_out = steps_across(p, &out, across);
-    float beside = fminf(fabsf(further_in.mean), fabsf(further_out.mean)); /* one may be the inner circle's edge */
+    float beside =
+        fminf(fabsf(further_in.mean), fabsf(further_out.mean)); /* one of them may be the inner circle's edge */
     return here.alike > LEAST_ALIKE && fabsf(here.mean) > LEAST_STEP && fabsf(here.mean) > SHARPER * beside;
 }
 

@@ -49,7 +49,7 @@ static void draw_all(const merlin_calibration *c, float scale, canvas_drawing *d
         draw_light(c, i, scale, d);
 }
 
-/* An arrow is as long as the ball's radius when its light is at the side, and a point when it is behind the camera. */
+/* Draws an arrow as long as the ball's radius for a light at the side, and a point for one behind the camera. */
 static status write_picture(const merlin_calibration *c, const char *path)
 {
     static const float LARGEST = 1280;

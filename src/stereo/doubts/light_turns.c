@@ -61,14 +61,14 @@ static bool differences(const vec3 *b, int width, vec3 *by_x, vec3 *by_y)
     return vec3_dot(*by_x, *by_x) + vec3_dot(*by_y, *by_y) < 1; /* more is a jump */
 }
 
-static void take_place(const pst_light_fit *f, const vec3 *b, const img *balloon, int x, int y, places *all)
+static void take_place(const pst_light_fit *f, const vec3 *b, const img *inflated, int x, int y, places *all)
 {
     int width = f->small.width, height = f->small.height;
     size_t i = (size_t)y * (size_t)width + (size_t)x;
     if (!(vec3_length(b[i]) > 0)) return;
     place *p = &all->at[all->count++];
     *p = (place){.normal = vec3_normalize(b[i])};
-    const float *out = balloon->data + 3 * i;
+    const float *out = inflated->data + 3 * i;
     float aside = hypotf(out[0], out[1]);
     if (aside > 0.3f && is_at_rim(&f->small.mask, x, y)) {
         p->out_x = out[0] / aside;
@@ -82,15 +82,15 @@ static void take_place(const pst_light_fit *f, const vec3 *b, const img *balloon
 
 static status list_places(const pst_light_fit *f, const vec3 *b, places *out)
 {
-    img balloon, height;
+    img inflated, height;
     *out = (places){malloc((size_t)f->small.width * (size_t)f->small.height * sizeof *out->at), 0, 0, 0};
     if (!out->at) return fail(MERLIN_NO_MEMORY, "no memory for %d x %d normals", f->small.width, f->small.height);
-    status s = pst_inflate(&f->small.mask, &balloon, &height);
+    status s = pst_inflate(&f->small.mask, &inflated, &height);
     if (s != OK) return s;
     for (int y = 0; y < f->small.height; y++)
         for (int x = 0; x < f->small.width; x++)
-            take_place(f, b, &balloon, x, y, out);
-    img_free(&balloon);
+            take_place(f, b, &inflated, x, y, out);
+    img_free(&inflated);
     img_free(&height);
     return OK;
 }

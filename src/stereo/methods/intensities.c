@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* A pixel's value under light k is m = e_k l_k · b. With x = 1/e that is linear in x and b together: m_k x_k = l_k · b
+/* A pixel's value under light k is m = e_k l_k · b. With x = 1/e this is linear in x and b together: m_k x_k = l_k · b
  * (D. Cho, Y. Matsushita, Y.-W. Tai, I. S. Kweon, Photometric stereo under non-uniform light intensities and exposures,
  * ECCV 2016). Each pixel's b is eliminated by projection (G. Golub, V. Pereyra, SIAM J. Numer. Anal. 10, 1973), so that
- * shadows and highlights can be left out pixel by pixel; what remains of all pixels is a quadratic form in x, and x its
- * smallest eigenvector. Weights come from the robust fit under the intensities so far. */
+ * shadows and highlights can be left out pixel by pixel; the sum over all pixels is a quadratic form in x, and x its
+ * smallest eigenvector. Weights come from the robust fit under the previous intensities. */
 #include "stereo/methods/intensities.h"
 #include "base/number.h"
 
@@ -18,21 +18,22 @@
 #include "stereo/fit/samples.h"
 
 enum { ROUNDS = 40, FITS = 3 };
-/* Of the albedo: how far from the fit an observation may be, at first and at last. */
+/* First and last width of the loss, as a share of the albedo. */
 static const float widest = 0.8f, narrowest = 0.1f;
-/* Of a pixel's ordinary brightness: shadows are below, highlights above. */
+/* Limits of shadows and highlights, relative to a pixel's ordinary brightness. */
 static const float dark = 0.15f, bright = 1.5f;
-/* Rounds end when no intensity moves by more than this share. */
+/* Rounds end when no intensity changes by more than this share. */
 static const double settled = 1e-3;
-/* A light with less than this share of the others' weight is taken for a shadow everywhere: too weak for its guess. */
+/* Share of the others' weight below which a light is considered to be in shadow everywhere, because its estimate is too
+ * low. */
 static const double forgotten = 1e-2;
-/* Intensities further from equal ones are a failure of the form, not lamps. */
+/* Largest deviation from equal intensities; larger ones are a failure of the form, not lamps. */
 static const double most_apart = 10;
 
 typedef struct intensities_job {
     const pst_problem *problem;
     pst_samples sample;
-    float *level, *ratio; /* a pixel of the sample */
+    float *level, *ratio; /* per pixel of the sample */
     double *form, *own;   /* lights × lights, lower half; its diagonal before the projection */
     double *eigenvalue, *next;
 } intensities_job;
@@ -68,8 +69,8 @@ double pst_intensities_typical(float *ratio, size_t count)
     return pst_intensities_about(ratio, count, fmax((double)ratio[count / 2], 1e-6));
 }
 
-/* The pixel's surface by its weights, and the weights from what it leaves; lights that are dark, in the pixel's
- * ordinary brightness, lie in its shadow whatever their strength. */
+/* Fits the pixel's surface by its weights, and sets the weights by the residuals; lights that are dark relative to the
+ * pixel's ordinary brightness are in its shadow, whatever their intensity. */
 static void fit_pixel(intensities_job *job, size_t i, const double *e, float width)
 {
     pst_samples *m = &job->sample;
@@ -90,7 +91,7 @@ static void fit_pixel(intensities_job *job, size_t i, const double *e, float wid
     }
 }
 
-/* One pixel's part of the form, Mᵀ (W − W L (Lᵀ W L)⁻¹ Lᵀ W) M, whatever its albedo. */
+/* Adds one pixel's part of the form, Mᵀ (W − W L (Lᵀ W L)⁻¹ Lᵀ W) M, whatever its albedo. */
 static void add_pixel(intensities_job *job, size_t i)
 {
     const merlin_light *light = job->problem->light;
@@ -115,7 +116,7 @@ static void add_pixel(intensities_job *job, size_t i)
     }
 }
 
-/* From the surface, for a light that no pixel's fit takes for one. */
+/* Returns the intensity by the surface, for a light that no pixel's fit uses. */
 static double from_surface(intensities_job *job, int k)
 {
     const pst_samples *m = &job->sample;
@@ -128,9 +129,8 @@ static double from_surface(intensities_job *job, int k)
     return pst_intensities_typical(job->ratio, count);
 }
 
-/* The form of unit diagonal, its upper half; own becomes the root of what it was divided by, 0 for forgotten lights,
- * which it leaves.
- */
+/* Scales the form to a unit diagonal, upper half only; own becomes the square root of the divisor, 0 for lights without
+ * weight, which are removed from it. */
 static void scale_form(intensities_job *job)
 {
     int n = job->sample.lights;
@@ -148,8 +148,8 @@ static void scale_form(intensities_job *job)
         }
 }
 
-/* The smallest eigenvector, drawn toward equal intensities as far as others are hardly larger: on a surface whose
- * normals hardly differ, intensities and albedo explain each other. */
+/* Finds the smallest eigenvector, shifted toward equal intensities as far as other eigenvalues are hardly larger: on a
+ * surface whose normals hardly differ, intensities and albedo are ambiguous. */
 static status solve_form(intensities_job *job)
 {
     int n = job->sample.lights;
@@ -169,14 +169,14 @@ static status solve_form(intensities_job *job)
     return OK;
 }
 
-/* From the intensities so far to better ones; *moved: the most that one did. */
+/* Improves the intensities; *moved: the largest change. */
 static status improve(intensities_job *job, float width, double *e, double *moved)
 {
     int n = job->sample.lights;
     for (size_t i = 0; i < job->sample.count; i++)
         for (int k = 0; k < FITS; k++)
             fit_pixel(job, i, e, width);
-    memset(job->form, 0, (size_t)n * (size_t)(n + 1) * sizeof *job->form); /* own is behind it */
+    memset(job->form, 0, (size_t)n * (size_t)(n + 1) * sizeof *job->form); /* own follows it in memory */
     for (size_t i = 0; i < job->sample.count; i++)
         add_pixel(job, i);
     status s = solve_form(job);
@@ -195,7 +195,7 @@ static status improve(intensities_job *job, float width, double *e, double *move
     return OK;
 }
 
-/* Neither shadow nor highlight, if the lights were equally strong. */
+/* Gives weight to what would be neither shadow nor highlight if the lights were equally strong. */
 static void start_weights(intensities_job *job)
 {
     pst_samples *m = &job->sample;

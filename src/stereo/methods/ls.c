@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Lambertian least squares (R. J. Woodham, Photometric method for determining surface orientation from multiple images,
  * Optical Engineering 19(1), 1980): per pixel the weighted 3×3 normal equations over observations that are neither dark
- * nor saturated, one right-hand side a colour channel.
+ * nor saturated, with one right-hand side per colour channel.
  *
  * Pictures are streamed: a block of pixels small enough for the cache is summed over all pictures (ls_sums.h), so that
  * every sample is read from memory once and working memory does not grow with the number of pictures. */
@@ -16,23 +16,23 @@
 #include "stereo/methods/ls_sums.h"
 #include "stereo/methods/solve_parts.h"
 
-/* Pixels looked at to choose what counts as dark. */
+/* Number of pixels from which the limit of dark values is derived. */
 enum { SAMPLE = 1024 };
 
 typedef struct ls_job {
     const merlin_capture *capture;
     const ls_lights *lights;
     merlin_surface *out;
-    float per_unit; /* albedo of what has 1 in the sums */
+    float per_unit; /* albedo of 1 in the sums */
 } ls_job;
 
-/* What a block's sums say, a component after the other, so that pixels go through vector registers together. */
+/* Solutions for a block, one component after the other, so that pixels are processed together in vector registers. */
 typedef struct solutions {
     float normal[3][LS_BLOCK], albedo[3][LS_BLOCK], residual[LS_BLOCK];
 } solutions;
 
-/* pst_facing without a branch, and of any length; how steep the steepest is does not matter to a half, which spares a
- * root. */
+/* Makes a normal of any length unit and facing the camera, without a branch. The least z does not matter within a
+ * factor of two, which saves a square root. */
 static inline vec3 facing(vec3 n)
 {
     return vec3_make(n.x, n.y, max_of(n.z, 1e-3f * (fabsf(n.x) + fabsf(n.y)) + 1e-18f));
@@ -53,9 +53,9 @@ static inline vec3 right_side(const ls_sums *s, int channel, int i)
     return vec3_make(s->right[channel][0][i], s->right[channel][1][i], s->right[channel][2][i]);
 }
 
-/* The channels share the normal, not the albedo: each weighs by its own albedo, which is one step of the power
- * iteration for the best rank-one fit to all channels. Channels that a grey picture lacks are zero and change nothing.
- */
+/* Solves for LS_LANES pixels. The channels share the normal, not the albedo: each is weighted by its own albedo, which
+ * is one step of the power iteration for the best rank-one fit to all channels. Channels that a grey picture lacks are
+ * zero and have no effect. */
 static void solve_lanes(const ls_sums *restrict s, int count, float per_unit, solutions *restrict out)
 {
 #pragma omp simd
@@ -89,7 +89,7 @@ static inline float inside(float mask, float x)
     return mask > 0.5f ? x : 0;
 }
 
-/* A component of LS_LANES pixels, zero outside the mask. */
+/* Loads a component of LS_LANES pixels, zero outside the mask. */
 static inline void take(const float *from, const ls_lane_bits *counts, ls_lanes *to)
 {
     memcpy(to, from, sizeof *to);
@@ -156,7 +156,7 @@ static void solve_blocks(void *context, size_t begin, size_t end)
     }
 }
 
-/* The most that a pixel's channels have on average in any picture, in codes. */
+/* Returns the largest mean over a pixel's channels in any picture, in codes. */
 static double brightest(const merlin_capture *c, size_t pixel)
 {
     uint32_t top = 0;
@@ -170,8 +170,7 @@ static double brightest(const merlin_capture *c, size_t pixel)
     return (double)top / (double)channels;
 }
 
-/* A hundredth of what the object's pixels reach at their brightest, on average over the first of every so many pixels.
- */
+/* Returns a hundredth of the brightest values of the object's pixels, averaged over an evenly spread sample. */
 static float chosen_shadow(const merlin_capture *c)
 {
     size_t size = (size_t)c->width * (size_t)c->height, step = size / SAMPLE + 1, count = 0;
@@ -197,8 +196,8 @@ static double mean_intensity(const pst_problem *p)
     return sum / (count * channels);
 }
 
-/* Lights of mean intensity 1: a channel weighs by the third power of what is summed, which would leave the range of a
- * float under lights of a million. */
+/* Scales the lights to mean intensity 1: a channel's weight is the third power of its sum, which would exceed a float's
+ * range under lights of a million. */
 static status lights_in_unit(const pst_problem *p, ls_limits limits, double unit, ls_lights **out)
 {
     size_t count = (size_t)p->capture->count;

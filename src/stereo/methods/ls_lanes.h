@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* What least squares does by whole vector registers: pictures' codes taken apart into channels, answers woven together.
- * Sixteen pixels side by side where registers are that wide, else eight; the order in which values are fetched from
- * registers is written down for each, because compilers turn what is not made for their registers into a value after
- * the other (which took 18 times as long). Vectors are handed on by address: how they are passed by value depends on
- * the processor. */
+/* Vector operations of least squares: splitting pictures' codes into channels, and interleaving results. Sixteen pixels
+ * are processed together where registers are that wide, else eight; the order in which values are loaded is written out
+ * for each, because compilers turn vectors that do not match their registers into scalar code (which took 18 times as
+ * long). Vectors are passed by address, as passing by value depends on the processor. */
 #ifndef MERLIN_STEREO_METHODS_LS_LANES_H
 #define MERLIN_STEREO_METHODS_LS_LANES_H
 
@@ -21,13 +20,13 @@ enum { LS_LANES = 8 };
 typedef float ls_lanes __attribute__((vector_size(LS_LANES * sizeof(float))));
 typedef int32_t ls_lane_bits __attribute__((vector_size(LS_LANES * sizeof(int32_t))));
 
-/* LS_LANES pixels' codes; a grey picture has only the first. */
+/* Codes of LS_LANES pixels; a grey picture has only the first. */
 typedef struct ls_lane_colour {
     ls_lanes r, g, b;
 } ls_lane_colour;
 
-/* ls_lanes_of_grey, ls_lanes_of_colour: twice LS_LANES pixels from here on, the first half's codes and the second's.
- * ls_lanes_weave: three components side by side, 3 LS_LANES values, each store a whole register. */
+/* ls_lanes_of_grey and ls_lanes_of_colour load twice LS_LANES pixels, the first half's codes and the second's.
+ * ls_lanes_weave interleaves three components, 3 LS_LANES values, one register per store. */
 
 #ifdef __AVX512BW__
 
@@ -35,14 +34,14 @@ typedef uint32_t ls_lane_words __attribute__((vector_size(LS_LANES * sizeof(uint
 typedef uint16_t ls_lane_codes
     __attribute__((vector_size(2 * LS_LANES * sizeof(uint16_t)))); /* of twice as many pixels */
 
-/* The even codes of a vector, and the odd ones. */
+/* Separates the even and the odd codes of a vector. */
 static inline void ls_lanes_widen(const ls_lane_codes *codes, ls_lanes *even, ls_lanes *odd)
 {
     *even = __builtin_convertvector((ls_lane_bits)((ls_lane_words)*codes & 0xffff), ls_lanes);
     *odd = __builtin_convertvector((ls_lane_bits)((ls_lane_words)*codes >> 16), ls_lanes);
 }
 
-/* Before codes are widened the halves' alternate. */
+/* Loads codes; before they are widened, those of the two halves alternate. */
 static inline void ls_lanes_of_grey(const uint16_t *from, ls_lane_colour *first, ls_lane_colour *second)
 {
     ls_lane_codes in;
@@ -52,7 +51,7 @@ static inline void ls_lanes_of_grey(const uint16_t *from, ls_lane_colour *first,
     ls_lanes_widen(&mixed, &first->r, &second->r);
 }
 
-/* Every third code of 96: from the first two vectors what they have, the rest from the last one. */
+/* Selects every third code of 96: from the first two vectors as far as they go, the rest from the last one. */
 static inline void ls_lanes_of_colour(const uint16_t *from, ls_lane_colour *first, ls_lane_colour *second)
 {
     ls_lane_codes p, q, s;
@@ -97,15 +96,15 @@ static inline void ls_lanes_widen(const ls_lane_codes *codes, ls_lanes *to)
 {
 #ifdef __AVX2__
     ls_lane_bits wide =
-        (ls_lane_bits)_mm256_cvtepu16_epi32((__m128i)*codes); /* gcc 12 widens the halves and joins them */
+        (ls_lane_bits)_mm256_cvtepu16_epi32((__m128i)*codes); /* gcc 12 would widen the halves and join them */
 #else
     ls_lane_bits wide = __builtin_convertvector(*codes, ls_lane_bits);
 #endif
     *to = __builtin_convertvector(wide, ls_lanes);
 }
 
-/* Eight pixels' codes: at every place one of three vectors has each channel, so that two blends find a channel's eight
- * and one shuffle sorts them. */
+/* Splits eight pixels' codes: at every place one of three vectors has each channel, so that two blends find a channel's
+ * eight codes and one shuffle sorts them. */
 static inline void ls_lanes_of_eight(const uint16_t *from, ls_lane_colour *to)
 {
     ls_lane_codes p, q, s;

@@ -6,21 +6,21 @@
 
 #include "stereo/methods/ls_lanes.h"
 
-/* Pictures added at once; pictures whose bits fill a word; pixels side by side. docs/notes/least_squares.md has what
- * was tried. */
+/* Number of pictures that are added at once; pictures whose bits fill a word; padded length of a light's products.
+ * docs/notes/least_squares.md lists what was tried. */
 enum { TOGETHER = 2, WORD = 32, PRODUCTS = 8, CACHE_LINE = 64 };
 
-/* What one picture's light contributes. */
+/* Contribution of one picture's light. */
 typedef struct ls_light {
     float x, y, z;
-    float scale[3];          /* code to radiance under unit intensity */
-    float product[PRODUCTS]; /* l lᵀ in the first six; as many as fit a register well */
-    int32_t bit;             /* in its word; 0 for what only fills up the last few */
+    float scale[3];          /* factor from code to radiance under unit intensity */
+    float product[PRODUCTS]; /* l lᵀ in the first six; padded to fit a register */
+    int32_t bit;             /* bit in its word; 0 for padding at the end */
     const uint16_t *picture;
 } ls_light;
 
 struct ls_lights {
-    int count; /* filled up to a multiple of TOGETHER */
+    int count; /* number, padded to a multiple of TOGETHER */
     int channels;
     ls_limits limits;
     ls_light at[];
@@ -57,7 +57,7 @@ void ls_lights_free(ls_lights *l)
     free(l);
 }
 
-/* ---- right sides ---- */
+/* ---- right-hand sides ---- */
 
 static inline void which_grey(const ls_lane_colour *codes, ls_limits limits, ls_lane_bits *counts)
 {
@@ -78,7 +78,7 @@ static inline void add_lit(uint32_t *lit, const ls_lane_bits *a, const ls_lane_b
     memcpy(lit, &sum, sizeof sum);
 }
 
-/* Codes as radiance, zero where they do not count. */
+/* Converts codes to radiance, zero where they do not count. */
 static inline void radiance(const ls_lanes *codes, const ls_lane_bits *counts, float scale, ls_lanes *out)
 {
     ls_lanes v = *codes * scale;
@@ -99,8 +99,8 @@ typedef struct lane_counts {
     ls_lane_bits a, b;
 } lane_counts;
 
-/* One channel in two pictures: its sums travel between registers and cache once for both, and only while it is its
- * turn, because there are sixteen registers in some processors. */
+/* Adds one channel of two pictures: its sums are loaded and stored once for both, and occupy registers only meanwhile,
+ * as some processors have only sixteen. */
 static inline void add_channel(ls_sums *s, int channel, int i, const ls_lanes *codes_a, const ls_lanes *codes_b,
                                const lane_counts *counts, const ls_light *l)
 {
@@ -151,10 +151,10 @@ static inline places places_from(const ls_light *l, size_t value)
     return p;
 }
 
-/* Pixels i .. i + 2 LS_LANES - 1 of a block; the values are theirs. */
+/* Adds pixels i .. i + 2 LS_LANES - 1 of a block, whose values are given. */
 static inline void add_lanes(const ls_lights *all, const ls_light *l, places values, ls_sums *s, uint32_t *lit, int i)
 {
-    ls_lane_colour a[2], b[2]; /* halves of either picture's */
+    ls_lane_colour a[2], b[2]; /* both halves of each picture */
     if (all->channels == 1) {
         ls_lanes_of_grey(values.at[0], &a[0], &a[1]);
         ls_lanes_of_grey(values.at[1], &b[0], &b[1]);
@@ -168,21 +168,21 @@ static inline void add_lanes(const ls_lights *all, const ls_light *l, places val
     }
 }
 
-/* Fetches the values that will be wanted when these pixels come up in other pictures or the next block. */
+/* Prefetches the values of these pixels in the next pictures, or of the next block. */
 static void fetch(places from, size_t bytes)
 {
     for (int k = 0; k < TOGETHER; k++)
         for (size_t b = 0; b < bytes; b += CACHE_LINE)
-            __builtin_prefetch((const char *)from.at[k] + b, 0, 0); /* to be read once */
+            __builtin_prefetch((const char *)from.at[k] + b, 0, 0); /* read once only */
 }
 
-/* Some pictures of a block: the first one's light, the block's first value. */
+/* Some pictures of a block: the first one's light, and the block's first value. */
 typedef struct portion {
     const ls_light *light;
     size_t value;
 } portion;
 
-/* The last pixels of a picture, which do not fill all lanes: zeros, which never count, stand for the others. */
+/* Adds the last pixels of a picture, which do not fill all lanes; the rest is zeros, which never count. */
 static void add_rest(const ls_lights *all, portion now, int count, int i, ls_sums *s, uint32_t *lit)
 {
     uint16_t copy[TOGETHER][6 * LS_LANES] = {0};
@@ -194,7 +194,7 @@ static void add_rest(const ls_lights *all, portion now, int count, int i, ls_sum
     add_lanes(all, now.light, values, s, lit, i);
 }
 
-/* What is next is fetched meanwhile. */
+/* Adds pictures, and prefetches the next ones meanwhile. */
 static void add_pictures(const ls_lights *all, portion now, portion next, int count, ls_sums *s, uint32_t *lit)
 {
     int i = 0, channels = all->channels;
@@ -209,13 +209,13 @@ static void add_pictures(const ls_lights *all, portion now, portion next, int co
 
 /* ---- matrices ---- */
 
-/* The matrix of the last word of bits that was asked for. */
+/* The matrix of the most recent word of bits. */
 typedef struct matrix_memory {
     uint32_t word;
-    float matrix[PRODUCTS]; /* of no lights at first */
+    float matrix[PRODUCTS]; /* for no lights at first */
 } matrix_memory;
 
-/* Without branches: which pixels are in shadow is hard to foresee. */
+/* Computes the matrix of a word without branches, as shadows are hard to predict. */
 static void recall(matrix_memory *m, uint32_t word, const ls_light *l, int lights)
 {
     if (m->word == word) return;
@@ -260,7 +260,7 @@ static void add_each(const uint32_t *lit, const ls_light *l, int lights, int i, 
             s->matrix[e][i + k] += all[e][k];
 }
 
-/* Of the lights of one word. */
+/* Adds the matrices of the lights of one word. */
 static void add_matrices(const uint32_t *lit, const ls_light *l, int lights, int count, ls_sums *s)
 {
     matrix_memory memory = {0};

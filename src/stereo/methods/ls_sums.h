@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: MIT */
-/* The sums of a block of pixels over all pictures, at the speed of memory: what ls.c solves.
+/* Sums of a block of pixels over all pictures, for ls.c, limited only by the speed of memory.
  *
  *     ls_lights lights;
  *     status s = ls_lights_new(problem, &limits, &lights);
- *     ls_sums_add(&lights, first, count, &sums);     a block's; from any thread
+ *     ls_sums_add(&lights, first, count, &sums);     of one block; from any thread
  *     ls_lights_free(&lights);
  *
- * Pixels lie side by side in vector registers and several pictures are added at once, so that the sums travel between
- * registers and cache once for all of these; the next pictures' values are fetched meanwhile. The right sides need only
- * the values that count, and which those are is kept as a bit a picture: neighbours mostly agree, and then the matrix
- * is made once for many pixels. */
+ * Pixels are processed together in vector registers and several pictures are added at once, so that the sums are loaded
+ * and stored once for all of these; the next pictures' values are prefetched meanwhile. The right-hand sides need only
+ * the values that count, which are recorded as one bit per picture: neighbours mostly have equal bits, and then the
+ * matrix is made once for many pixels. */
 #ifndef MERLIN_STEREO_METHODS_LS_SUMS_H
 #define MERLIN_STEREO_METHODS_LS_SUMS_H
 
 #include "stereo/fit/problem.h"
 
-/* Pixels a block: the 11 sums of a pixel that every picture changes (11 KiB) and the values of now and next (6 KiB)
+/* Pixels per block: the 11 sums of a pixel that every picture changes (11 KiB) and the current and next values (6 KiB)
  * stay in a first-level cache of 32 KiB. */
 enum { LS_BLOCK = 256 };
 
@@ -25,7 +25,7 @@ typedef struct ls_sums {
     float square[LS_BLOCK];      /* Σ v² */
 } ls_sums;
 
-/* A value counts if low < value (of all channels, summed) and no channel reaches high. In codes. */
+/* Limits in codes: a value counts if low < value (summed over all channels) and no channel reaches high. */
 typedef struct ls_limits {
     float low, high;
 } ls_limits;
@@ -35,7 +35,7 @@ typedef struct ls_lights ls_lights;
 status ls_lights_new(const pst_problem *p, ls_limits limits, ls_lights **out);
 void ls_lights_free(ls_lights *l);
 
-/* Of the pixels first .. first + count - 1, count at most LS_BLOCK. */
+/* Sums the pixels first .. first + count - 1, where count is at most LS_BLOCK. */
 void ls_sums_add(const ls_lights *l, size_t first, int count, ls_sums *out);
 
 #endif

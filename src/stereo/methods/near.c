@@ -1,18 +1,19 @@
 /* SPDX-License-Identifier: MIT */
-/* Near point lights and a perspective camera, alternating (the scheme of Logothetis, Mecca & Cipolla, Semi-calibrated
- * near field photometric stereo, CVPR 2017, with a robust fit for the normals): from a depth map each pixel has its own
- * light vectors, inverse-square attenuation and LED lobes; from these its normal (field_fit.h); from the normals a
- * depth map by integration. The first depth map is a plane that faces the camera.
+/* Photometric stereo with near point lights and a perspective camera by alternation (the scheme of Logothetis, Mecca &
+ * Cipolla, Semi-calibrated near field photometric stereo, CVPR 2017, with a robust fit for the normals): a depth map
+ * gives each pixel its own light vectors, inverse-square attenuation and LED lobes; these give its normal
+ * (field_fit.h); and the normals give a depth map by integration. The first depth map is a plane that faces the camera.
  *
- * Normals cannot tell how far behind another a part of the object lies, and integration alone joins what only meets in
- * the picture. The lights tell: each pixel's fit also says in which distance it would agree better with how they fall
- * off (fall_off.h), and draws its depth there, softly, so that all of a part's pixels together place the part.
+ * Normals do not determine how far behind another a part of the object lies, and integration alone joins parts that
+ * only touch in the picture. The lights do: each pixel's fit also yields the distance at which it would agree better
+ * with their fall-off (fall_off.h), toward which its depth is weakly pulled, so that all of a part's pixels together
+ * place the part.
  *
- * Most rounds are gone through on a small version of the pictures (shrink.h), which knows the depth nearly as well.
+ * Most rounds use a small version of the pictures (shrink.h), which determines the depth nearly as well.
  *
- * Where the camera's mean distance is known the depth keeps it until parts have found their places (then what is still
- * wrong in the dark must not move the rest); otherwise the lights tell that, too. With few lights the first rounds also
- * find out whether a highlight's lobe is worth fitting (lobe_choice.h). */
+ * If the camera's mean distance is known, the depth keeps it until parts have found their positions (afterwards
+ * remaining errors in dark regions must not move the rest); otherwise the lights determine it, too. With few lights the
+ * first rounds also decide whether fitting a highlight's lobe is justified (lobe_choice.h). */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,25 +25,27 @@
 #include "stereo/integrate/integrate.h"
 #include "stereo/methods/solve_parts.h"
 
-/* SMALL: pixels that the depth is searched on, up to four times as many; ANEW: rounds whose fits start from nothing,
- * since the depth was far off; ADMISSIONS: rounds until it is good enough to judge a lobe by; STEPPED: rounds at the
- * end. */
+/* SMALL: number of pixels on which the depth is searched, up to four times as many; ANEW: rounds whose fits have no
+ * start, since the depth is far off; ADMISSIONS: rounds until it suffices to decide about a lobe; STEPPED: rounds with
+ * steps in depth at the end. */
 enum { ITERATIONS = 12, SAMPLE = 192, SMALL = 1500, ANEW = 3, ADMISSIONS = 2, STEPPED = 2, SWEEPS = 2 };
 
-/* Rounds end when depths move by less than this share of the distance, on average. */
+/* Rounds end when depths change by less than this share of the distance on average. */
 static const float settled = 3e-4f;
 
-/* The slope that normals are taken to err by beside what a pixel says of its own depth: more where parts still look for
- * their place, less where the surface is to be smooth. Normals err by less, but neighbours err alike in their depths.
- * Rendered objects come out much the same for slopes from half to twice these. */
+/* Assumed error of the normals' slopes relative to a pixel's own estimate of its depth: larger while parts still move,
+ * smaller when the surface is to be smooth. Normals have smaller errors, but neighbours' depths have correlated ones.
+ * Rendered objects give nearly the same results for slopes from half to twice these. */
 static const float searching = 0.3f, placed = 0.1f;
 
-/* No pixel asks for more than this change of log depth in a round, nor is trusted further than to a percent. */
+/* Largest change of log depth per pixel and round, and limits of its weight, which is not higher than for an accuracy
+ * of one percent. */
 static const float most_offset = 0.1f, most_trust = 1e4f, least_trust = 1e-2f;
 
-/* The distance is told where this factor on it costs this much more, and a pixel this much, which noise does, too.
- * Rings of four lights have 1 to 1.2 and 0.04, three lights nothing; five about a ball 4 and 0.5, fifty about objects
- * of all kinds 1.6 at least and 8 (docs/notes/solvers.md has what a ring leaves). */
+/* The distance counts as determined if changing it by this factor multiplies the cost by well_told and adds least_told
+ * per pixel, since noise changes it, too. Rings of four lights have 1 to 1.2 and 0.04, three lights nothing; five
+ * around a ball 4 and 0.5, fifty around objects of all kinds at least 1.6 and 8 (docs/notes/solvers.md states the
+ * errors with a ring). */
 static const float elsewhere = 1.25f;
 static const double well_told = 1.3, least_told = 0.1;
 
@@ -52,10 +55,10 @@ typedef struct near_job {
     pst_field sample; /* for the scale */
     pinhole camera;
     pst_lobe lobe;
-    pst_shading *shading; /* a pixel */
-    float held_at;        /* mean distance, where it is known and until parts have found their places; else 0 */
-    const watch *watch;   /* of the integration, where it lasts; else NULL */
-    float moved;          /* by the last integration: mean of all pixels, against the distance */
+    pst_shading *shading; /* one per pixel */
+    float held_at;      /* mean distance while it is fixed: if known, until parts have found their positions; else 0 */
+    const watch *watch; /* progress of the integration, if it takes long; else NULL */
+    float moved;        /* mean change by the last integration relative to the distance */
 } near_job;
 
 static void fill_plane(const pst_problem *p, float distance, img *depth)
@@ -72,7 +75,7 @@ static float light_reach(const merlin_capture *c)
     return sum / (float)c->count;
 }
 
-/* Of the sampled pixels, with the depth times a factor. */
+/* Computes the cost of the sampled pixels with the depth multiplied by a factor. */
 static status cost_at(const near_job *job, float scale, bool anew, double *cost)
 {
     pst_field f = job->sample;
@@ -81,7 +84,7 @@ static status cost_at(const near_job *job, float scale, bool anew, double *cost)
     return anew ? pst_field_fit(&f, cost) : pst_field_refine(&f, cost);
 }
 
-/* The factor on the depth with the least loss among 2 steps + 1 factors a ratio apart around 1. */
+/* Finds the factor of the depth with the least cost among 2 steps + 1 factors around 1, a ratio apart. */
 static status best_scale(near_job *job, float ratio, int steps, bool anew, float *scale)
 {
     double best = HUGE_VAL, cost;
@@ -97,7 +100,7 @@ static status best_scale(near_job *job, float ratio, int steps, bool anew, float
     return s;
 }
 
-/* Whether the pictures are explained as well from nearer or further away: then how far the object is was a guess. */
+/* Finds out whether other distances explain the pictures equally well, so that the distance is unreliable. */
 static status check_distance(const near_job *job, bool *unsure)
 {
     double here, nearer, further;
@@ -126,7 +129,7 @@ static void keep_distance(near_job *job)
     job->camera.distance = job->held_at;
 }
 
-/* Mean change in depth against the distance. */
+/* Returns the mean change in depth relative to the distance. */
 static float change(const pst_problem *p, const img *a, const img *b, float distance)
 {
     double sum = 0;
@@ -147,7 +150,7 @@ static pst_field whole_field(const near_job *job)
                        .shading = job->shading};
 }
 
-/* anew: from nothing, else from the normals before. */
+/* Fits normals. anew: without a start, else from the previous normals. */
 static status fit_normals(const near_job *job, bool anew)
 {
     pst_field f = whole_field(job);
@@ -170,7 +173,7 @@ static status admit_lobe(near_job *job)
     return pst_lobe_admit(&f, &job->lobe);
 }
 
-/* The depth map by way of the normals. */
+/* Integrates the normals to the depth map. */
 static status integrate(near_job *job, const pst_integration *how)
 {
     img depth = {0};
@@ -184,7 +187,7 @@ static status integrate(near_job *job, const pst_integration *how)
     return OK;
 }
 
-/* Where each pixel's fit would have its depth, and what that weighs. */
+/* Computes the depth by each pixel's own fit, and its weight. */
 static status place_pixels(near_job *job, float slope, img *place, img *trust)
 {
     pst_field f = whole_field(job);
@@ -203,7 +206,7 @@ static status place_pixels(near_job *job, float slope, img *place, img *trust)
     return s;
 }
 
-/* The depth map by way of the normals and of what the lights say. */
+/* Integrates the normals and the pixels' own depths to the depth map. */
 static status place(near_job *job, float slope, bool preserve_edges)
 {
     img place = {0}, trust = {0};
@@ -241,7 +244,7 @@ static status iterate(near_job *job)
     return s;
 }
 
-/* From a plane at the distance that is known or most likely. */
+/* Finds the depth, starting from a plane at the known or most likely distance. */
 static status find_depth(near_job *job)
 {
     const pst_problem *p = job->problem;
@@ -257,7 +260,7 @@ static status find_depth(near_job *job)
     if (s == OK) s = check_distance(job, &unsure);
     job->out->distance_unsure = unsure && !(distance > 0);
     if (!unsure) job->held_at = 0;
-    /* steps in depth are let in once parts have found their places */
+    /* steps in depth are allowed once parts have found their positions */
     for (int k = 0; s == OK && k < STEPPED; k++) {
         s = fit_normals(job, k == 0);
         if (s == OK) s = place(job, placed, true);
@@ -291,7 +294,7 @@ static status job_new(const pst_problem *p, merlin_surface *out, near_job *job)
                                                : fail(MERLIN_NO_MEMORY, "no memory to fit %zu pixels", p->pixel_count);
 }
 
-/* The depth map, the distance and the lobe from the small pictures. */
+/* Finds the depth map, the distance and the lobe on the small pictures. */
 static status find_depth_small(near_job *job, int factor)
 {
     const merlin_capture *c = job->problem->capture;
@@ -318,7 +321,7 @@ static status find_depth_small(near_job *job, int factor)
     return s;
 }
 
-/* The small depth map's steps find their pixels. */
+/* Enlarges the small depth map, and finds the pixels of its steps. */
 static status fill_in(near_job *job)
 {
     job->watch = job->problem->effort ? job->problem->effort->watch : NULL;

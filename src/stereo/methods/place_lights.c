@@ -8,30 +8,31 @@
 #include "stereo/capture/shrink.h"
 #include "stereo/methods/solve.h"
 
-/* SMALL, VALUES: pixels that the distance is searched on, fewer of many pictures, and their values; ROUNDS: of each
- * solution; COARSE, FINE: distances that are tried; APART: steps between the best one and those that must cost more. */
+/* SMALL, VALUES: number of pixels on which the distance is searched, fewer with many pictures, and of their values;
+ * ROUNDS: of each solution; COARSE, FINE: numbers of distances to try; APART: steps between the best one and those that
+ * must cost more. */
 enum { SMALL = 900, VALUES = 90000, ROUNDS = 6, COARSE = 13, FINE = 10, APART = 2, VALLEYS = 2 };
-/* Half the object's extent against how far the lights are from it. The least is as good as lights from afar. */
+/* Half the object's extent relative to the lights' distance from it. The least is equivalent to distant lights. */
 static const float least_extent = 0.01f, first_extent = 0.03f, step = 1.35f;
-/* The field of view in degrees where none is known: from 25 to 63 another than the true one costs normals some tenths
- * of a degree. */
+/* Field of view in degrees if it is unknown: from 25 to 63 an error of it changes normals by some tenths of a degree.
+ */
 static const float usual_view = 45;
-/* Factors on what near lights leave unexplained, below which directions and other distances are as good. */
+/* Ratios of costs relative to near lights, below which distant lights, and other distances, are equally good. */
 static const double better = 1.3, sharper = 1.1;
 
 typedef struct search {
     merlin_capture small;
-    const vec3 *about; /* the lights' places about the object */
-    float unit;        /* the distance at which the object is as large as the lights are away */
+    const vec3 *about; /* positions of the lights relative to the object */
+    float unit;        /* distance at which the object is as large as the lights' distance */
     const watch *watch;
     int tried;
-    bool unsure; /* the last solution's distance */
+    bool unsure; /* whether the last solution's distance is unreliable */
 } search;
 
-/* How the lights are taken. */
+/* Interpretation of the lights. */
 typedef struct placing {
-    float distance;  /* from the camera to their middle */
-    bool held, near; /* held: the object's mean distance is that one, too */
+    float distance;  /* from the camera to their centre */
+    bool held, near; /* held: whether the object's mean distance is the same */
 } placing;
 
 static void put_lights(const vec3 *about, float distance, bool held, merlin_capture *c)
@@ -42,8 +43,7 @@ static void put_lights(const vec3 *about, float distance, bool held, merlin_capt
         vec3_put(vec3_add(about[k], vec3_make(0, 0, -distance)), c->light[k].position);
 }
 
-/* The mean of what a solution leaves unexplained; held: the object's mean
- * distance is the lights' middle's. */
+/* Computes the mean residual of a solution; held: the object's mean distance is that of the lights' centre. */
 static status cost_at(search *s, float extent, bool held, double *cost)
 {
     merlin_surface found;
@@ -65,7 +65,7 @@ static status cost_at(search *s, float extent, bool held, double *cost)
     return OK;
 }
 
-/* By halves of the steps between, on the side that costs less. */
+/* Refines by halving the steps, on the side of lower cost. */
 static status refine(search *s, float *extent, double *cost)
 {
     float ratio = sqrtf(step);
@@ -83,7 +83,7 @@ static status refine(search *s, float *extent, double *cost)
     return result;
 }
 
-/* Returns the distance that costs less than its neighbours, more than `above`, and least of such; -1: none. */
+/* Returns the least distance whose cost is lower than its neighbours', among those greater than `above`; -1: none. */
 static int next_valley(const double cost[COARSE], double above)
 {
     int best = -1;
@@ -94,8 +94,8 @@ static int next_valley(const double cost[COARSE], double above)
     return best;
 }
 
-/* Finds the distance; *told is whether others explain the pictures less well. An object nearer to the lights than their
- * middle is explains some, too: the two best distances are looked at closely. */
+/* Finds the distance; *told: whether other distances explain the pictures less well. An object nearer to the lights
+ * than their centre also explains some pictures, so that the two best distances are refined. */
 static status find_distance(search *s, float *distance, bool *told)
 {
     double cost[COARSE], least = HUGE_VAL, above = -1;
@@ -119,7 +119,7 @@ static status find_distance(search *s, float *distance, bool *told)
     return result;
 }
 
-/* Half the larger side of what the object fills of the picture. */
+/* Returns half the larger side of the object's bounding box in the picture. */
 static float half_extent(const merlin_capture *c)
 {
     int left = c->width, right = 0, top = c->height, bottom = 0;
@@ -189,7 +189,7 @@ static status refuse(const merlin_capture *c)
                 c->name[0]);
 }
 
-/* The object is where the lights' middle is, or before or behind it. */
+/* Chooses whether the object is at the lights' centre, or in front of or behind it. */
 static status choose(const merlin_capture *c, search *s, placing *p)
 {
     double afar = 0, free = 0, held = 0;
@@ -221,7 +221,7 @@ status pst_place_lights(merlin_capture *c, const watch *shown)
     search s;
     status result = search_new(c, about, shown, &s);
     if (result == OK) result = choose(c, &s, &p);
-    if (result == MERLIN_BAD_INPUT && !asked) { /* near lights have needs of their own */
+    if (result == MERLIN_BAD_INPUT && !asked) { /* near lights have further requirements */
         p.near = false;
         result = OK;
     }

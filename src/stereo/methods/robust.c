@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Highlights, cast shadows and light from elsewhere told from Lambert's law, under distant lights: a lobe a pixel
- * (lobe_fit.h), what pixels share from a sample (lobe_choice.h), and neighbours' results as further starts; pixels that
- * most neighbours contradict take their answer if it explains the pictures about as well. */
+/* Photometric stereo under distant lights that is robust to highlights, cast shadows and indirect light: a lobe per
+ * pixel (lobe_fit.h), common properties from a sample (lobe_choice.h), and neighbours' results as further starts;
+ * pixels that most neighbours contradict get the neighbours' result if it explains the pictures about as well. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -10,7 +10,8 @@
 
 enum { SAMPLE = 128, SWEEPS = 2 };
 
-/* What makes a pixel worth a longer search: many outliers, and many more than pixels of this object have. */
+/* Returns the cost from which on a pixel is searched longer: that of many outliers, and many more than usual for this
+ * object. */
 static float search_limit(const pst_field *f, double cost)
 {
     float many = 0.16f * (float)f->problem->capture->count, usual = (float)(cost / (double)f->count);

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Light directions known, intensities not (D. Cho, Y. Matsushita, Y.-W. Tai, I. S. Kweon, Semi-calibrated photometric
- * stereo, ECCV 2016 and PAMI 2018).
+/* Photometric stereo with known light directions and unknown intensities (D. Cho, Y. Matsushita, Y.-W. Tai, I. S.
+ * Kweon, Semi-calibrated photometric stereo, ECCV 2016 and PAMI 2018).
  *
- * Intensities by Lambert's law (intensities.h) and equal ones are two starts, from which intensities and a sample's
- * surface, its highlights included (lobe_fit.h), alternate. What explains the sample best counts. The mean intensity is
- * 1. On a surface whose normals hardly differ, intensities and albedo explain each other: equal ones are kept unless
- * others explain the pictures much better. */
+ * There are two starts, the intensities by Lambert's law (intensities.h) and equal ones; from each, intensities and the
+ * surface of a sample including its highlights (lobe_fit.h) are updated in turn. The result that explains the sample
+ * best is used. The mean intensity is 1. On a surface whose normals hardly differ, intensities and albedo are
+ * ambiguous: equal ones are kept unless others explain the pictures much better. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,32 +16,33 @@
 
 enum { SAMPLE = 240, ITERATIONS = 12, TRIAL_ROUNDS = 4 };
 
-/* With three every strength is right: each pixel has a surface for it. */
+/* Least number of lights: with three, each pixel has an exact surface for any intensities. */
 enum { FEWEST_LIGHTS = 4 };
 
-/* Of the loss of equal intensities: what others must bring it down to. */
+/* Share of the loss of equal intensities to which others must reduce it. */
 static const double worth_intensities = 0.8;
 static const float likely_terminator = 0.1f;
-/* How far highlights, shadows and the terminator may have taken Lambert's intensities, as a ratio. */
+/* Largest error, as a ratio, that highlights, shadows and the terminator cause in Lambert's intensities. */
 static const double most_bent = 1.25;
-/* Of pst_intensities_find. Flat reliefs under unequal lights are told to 1 to 11 and come out 3 to 14 degrees off; ones
- * half a degree off, rendered objects and real ones are told to 24 and more (docs/notes/unknown_lights.md). */
+/* Limit for pst_intensities_find's `told`. Flat reliefs under unequal lights have 1 to 11 and errors of 3 to 14
+ * degrees; reliefs with errors of half a degree, rendered objects and real ones have 24 and more
+ * (docs/notes/unknown_lights.md). */
 static const double well_told = 12;
-/* Pixels of less of a channel say little of it. */
+/* Least share of a channel for a pixel to be informative about it. */
 static const float least_colour = 0.1f;
 
-/* The sample under intensities that change. */
+/* Work on the sample under changing intensities. */
 typedef struct semi_job {
     pst_problem problem;
-    merlin_light *light; /* the problem's */
+    merlin_light *light; /* the problem's lights */
     pst_field field;
     pst_lobe lobe;
-    float *weight, *model, *value, *usable; /* count × padded */
-    float *ratio, *colour;                  /* count */
+    float *weight, *model, *value, *usable; /* count × padded each */
+    float *ratio, *colour;                  /* count each */
     size_t padded;
-    double cost, least; /* of the last look, of the best */
-    double *best;       /* count: its intensities; as many more: Lambert's */
-    bool equal;         /* what was found */
+    double cost, least; /* cost of the last fit, and of the best one */
+    double *best;       /* count intensities of the best fit, then Lambert's */
+    bool equal;         /* whether the result is equal intensities */
 } semi_job;
 
 static void set_intensities(semi_job *job, const double *e)
@@ -51,7 +52,8 @@ static void set_intensities(semi_job *job, const double *e)
             job->light[k].intensity[ch] = (float)e[k];
 }
 
-/* Each light's intensity given the surface: what most of the pixels that it should light have in proportion. */
+/* Computes each light's intensity from the surface: the ratio of observed to expected brightness for most of the pixels
+ * that it should light. */
 static void from_surface(const semi_job *job, double *e)
 {
     int count = job->problem.capture->count;
@@ -73,7 +75,7 @@ static float channel_of(const semi_job *job, size_t i, int light, int channel)
     return c->picture[light][(size_t)job->field.pixel[i] * (size_t)c->channels + (size_t)channel] / 65535.0f;
 }
 
-/* A pixel's brightness in a channel against its grey one, over all lights. */
+/* Returns a pixel's brightness in a channel relative to its grey one, over all lights. */
 static float colour(const semi_job *job, size_t i, int channel)
 {
     float seen = 0, grey = 1e-20f;
@@ -85,7 +87,8 @@ static float colour(const semi_job *job, size_t i, int channel)
     return seen / grey;
 }
 
-/* The lights' intensities in a channel from their grey ones: what most pixels have of it beside their own colour. */
+/* Computes the lights' intensities in a channel from their grey ones, by the ratio in most pixels relative to their own
+ * colour. */
 static void find_channel(const semi_job *job, int channel, double *e)
 {
     int count = job->problem.capture->count;
@@ -105,7 +108,7 @@ static void find_channel(const semi_job *job, int channel, double *e)
     pst_intensities_normalize(e, count);
 }
 
-/* The lights' intensities become coloured. e: 3 × count to work with. */
+/* Makes the lights' intensities coloured. e: 3 × count to work with. */
 static void find_colours(semi_job *job, double *e)
 {
     int count = job->problem.capture->count;
@@ -115,7 +118,7 @@ static void find_colours(semi_job *job, double *e)
         job->light[i % count].intensity[i / count] = (float)e[i];
 }
 
-/* The surface from the intensities. */
+/* Fits the surface to the intensities. */
 static status fit_surface(semi_job *job, bool choose, const double *e)
 {
     set_intensities(job, e);
@@ -130,8 +133,8 @@ static status fit_surface(semi_job *job, bool choose, const double *e)
     return OK;
 }
 
-/* The intensities from the surface, not far from Lambert's: a light that is made too strong turns what it lights into
- * shadows, which cost little, and would grow without end. */
+/* Computes the intensities from the surface, limited to a range around Lambert's: pixels of a light whose intensity is
+ * too high would become shadows, which cost little, so that it would grow without limit. */
 static void correct(semi_job *job, double *e)
 {
     const double *lambert = job->best + job->problem.capture->count;
@@ -140,8 +143,8 @@ static void correct(semi_job *job, double *e)
         e[k] = fmin(fmax(e[k], lambert[k] / most_bent), lambert[k] * most_bent);
 }
 
-/* Surface and intensities in turn, from e; the lobe is chosen anew as they come right. What costs least is kept, since
- * nothing makes the two agree on one loss. */
+/* Updates surface and intensities in turn, from e; the lobe is chosen again as they improve. The result of least cost
+ * is kept, since the two steps do not minimize the same loss. */
 static status improve(semi_job *job, bool choose, int rounds, double *e)
 {
     status s = OK;
@@ -152,7 +155,7 @@ static status improve(semi_job *job, bool choose, int rounds, double *e)
     return s;
 }
 
-/* A terminator that is left out goes into the intensities, and no longer shows: it is tried together with them. */
+/* Tries a terminator together with the intensities, which otherwise absorb it. */
 static status try_terminator(semi_job *job, double *e)
 {
     if (job->problem.capture->count < PST_MANY_LIGHTS) return OK;
@@ -162,8 +165,8 @@ static status try_terminator(semi_job *job, double *e)
     return s == OK ? improve(job, false, TRIAL_ROUNDS, e) : s;
 }
 
-/* From Lambert's intensities, in e. Equal ones are what most captures have: they are given up only for what costs much
- * less. */
+/* Decides between Lambert's intensities, in e, and equal ones, which most captures have, and which are given up only
+ * for a much lower cost. */
 static status settle(semi_job *job, int rounds, double *e)
 {
     size_t count = (size_t)job->problem.capture->count, bytes = count * sizeof *e;
@@ -218,7 +221,7 @@ static void job_free(semi_job *job)
     free(job->best);
 }
 
-/* Into the surface's lights, which are the problem's. */
+/* Finds the intensities and sets them in the surface's lights, which are the problem's. */
 static status find_strengths(const pst_problem *p, merlin_surface *out)
 {
     int count = p->capture->count;

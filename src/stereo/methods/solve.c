@@ -10,7 +10,7 @@
 #include "stereo/methods/solve_parts.h"
 #include "stereo/methods/unlit.h"
 
-/* Listed with z away from the camera, lights would be taken as they are, for a surface that hardly faces any. */
+/* Fails for lights listed with z away from the camera, which would give a surface that hardly faces any of them. */
 static status check_known_directions(const merlin_light *light, int count)
 {
     int behind = 0;
@@ -65,7 +65,7 @@ static status check_mask(const merlin_capture *c)
     return fail(MERLIN_BAD_INPUT, "the mask is empty: no pixel of the object is left to solve");
 }
 
-/* Some of the object's pixels, evenly: least squares look at none of a large picture twice. */
+/* Number of the object's pixels that are examined, evenly spread, so that large pictures are not read twice. */
 enum { ENOUGH = 1 << 18 };
 static size_t some_pixels(const merlin_capture *c, uint32_t some[ENOUGH])
 {
@@ -77,7 +77,7 @@ static size_t some_pixels(const merlin_capture *c, uint32_t some[ENOUGH])
     return count;
 }
 
-/* Mean over these pixels, as if the light were of intensity 1. */
+/* Returns the mean over these pixels, as if the light had intensity 1. */
 static double mean_seen(const pst_problem *p, int k, const uint32_t *some, size_t count)
 {
     size_t channels = (size_t)p->capture->channels;
@@ -88,12 +88,13 @@ static double mean_seen(const pst_problem *p, int k, const uint32_t *some, size_
     return sum / (double)count;
 }
 
-/* Few pictures cannot spare one: a flash that failed would be taken for shadow everywhere, and normals turned away from
- * its light. */
+/* Checks that few pictures include no black one: a flash that failed would count as shadow everywhere, and turn normals
+ * away from its light. */
 static status check_lit(const pst_problem *p)
 {
     enum { FEW = 8 };
-    static const double BLACK = 0.02; /* of the brightest picture; noise alone is less, the least of lights more */
+    static const double BLACK =
+        0.02; /* share of the brightest picture; noise alone is below it, the weakest light above */
     const merlin_capture *c = p->capture;
     if (c->count >= FEW) return OK;
     uint32_t *some = malloc(ENOUGH * sizeof *some);
@@ -110,11 +111,12 @@ static status check_lit(const pst_problem *p)
     return OK;
 }
 
-/* Beyond these, squares of albedos would leave the range of floats, or vanish beside what keeps a division from 0. */
+/* Range of intensities: beyond it squares of albedos would exceed the range of floats, or be lost next to the damping
+ * of divisions. */
 static const float least_intensity = 1e-15f, largest_intensity = 1e15f;
 
-/* Intensities that are not known, or are to be found, count as 1; a light of no intensity tells nothing and would
- * divide by zero. */
+/* Lists the lights. Intensities that are unknown or to be found count as 1; a light of intensity 0 would cause a
+ * division by zero. */
 static status list_lights(const merlin_capture *c, merlin_stereo_method method, merlin_light *light)
 {
     for (int i = 0; i < c->count; i++) {
@@ -170,8 +172,8 @@ static status run(const pst_problem *p, merlin_surface *out)
     }
 }
 
-/* A fit from nothing counts as four. Each method's own are so many times the pixels, near's first ones are on small
- * pictures. */
+/* Estimates the effort. A fit without a start counts as four; each method makes a multiple of the pixels, the first
+ * rounds of near on small pictures. */
 static size_t expected_effort(const pst_problem *p, merlin_stereo_method method)
 {
     static const size_t passes[] = {[MERLIN_STEREO_ROBUST] = 9,
@@ -203,7 +205,8 @@ status pst_solve(const merlin_capture *c, const merlin_stereo_params *params, me
     effort.expected = expected_effort(&p, out->method);
     if (s == OK) s = allocate(c, out);
     if (s == OK) s = run(&p, out);
-    if (s == OK && p.effort) pst_effort_add(&effort, 0); /* Other threads may have had the last pixels. */
+    if (s == OK && p.effort)
+        pst_effort_add(&effort, 0); /* reports the end, as other threads may have fitted the last pixels */
     if (s == OK && p.pixel && !out->depth.data) s = pst_unlit_fill(&p, out);
     if (s == OK && out->lights) out->light_count = c->count;
     free(p.pixel);

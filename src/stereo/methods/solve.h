@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-/* Normals, albedo and depth from a capture.
+/* Computes normals, albedo and depth from a capture.
  *
  *     merlin_surface surface;
  *     status s = pst_solve(&capture, &(merlin_stereo_params){.method = MERLIN_STEREO_AUTO}, &surface);
- *     merlin_surface_free(&surface); */
+ *     merlin_surface_free(&surface);
+ */
 #ifndef MERLIN_STEREO_METHODS_SOLVE_H
 #define MERLIN_STEREO_METHODS_SOLVE_H
 
 #include "stereo/integrate/stereo_surface.h"
 
-/* Fills all of the surface but its depth, unless the method finds that, too. MERLIN_STOPPED where params say so. */
+/* Fills all of the surface but its depth, unless the method finds that, too. MERLIN_STOPPED if params ask to stop. */
 status pst_solve(const merlin_capture *c, const merlin_stereo_params *params, merlin_surface *out);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The solvers of solve.h: each takes a checked problem and fills an allocated surface. */
+/* The solvers of solve.h: each gets a checked problem and fills an allocated surface. */
 #ifndef MERLIN_STEREO_METHODS_SOLVE_PARTS_H
 #define MERLIN_STEREO_METHODS_SOLVE_PARTS_H
 

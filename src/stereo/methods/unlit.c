@@ -7,18 +7,17 @@
 #include "base/parallel.h"
 #include "stereo/integrate/poisson.h"
 
-/* Of what the object's pixels reach at their brightest in the mean: what is brighter is lit. Darker may be noise or a
- * dark material. */
+/* Share of the mean of the object's brightest values from which on a pixel is lit; a darker one may be noise or a dark
+ * material. */
 static const float dark = 0.1f;
 
-/* Likeness, over lights and channels, of a pixel's values to its neighbours': 1 for what is lit, also the darkest of
- * materials; 0.46 for noise about black, of which what is below 0 was cut off. In the mean over dark pixels around,
- * this far to each side, for one alone is like its neighbours by chance. */
+/* Least cosine similarity, over lights and channels, of a lit pixel's values and its neighbours': 1 for lit pixels of
+ * even the darkest materials; 0.46 for noise around black whose negative values were cut off. And the radius over which
+ * it is averaged, as single pixels can be similar to their neighbours by chance. */
 static const float coherent = 0.65f;
 enum { REACH = 2 };
 
-/* Known normals are held by this much more than neighbours smooth; unknown ones drift to the camera by this much less.
- */
+/* Weight of known normals relative to smoothness, and of unknown ones toward the camera. */
 static const float held = 1e4f, drift = 1e-6f;
 
 static float value_at(const pst_problem *p, int light, size_t pixel, int channel)
@@ -27,7 +26,7 @@ static float value_at(const pst_problem *p, int light, size_t pixel, int channel
     return (float)c->picture[light][pixel * (size_t)c->channels + (size_t)channel] / p->light[light].intensity[channel];
 }
 
-/* The brightest that a pixel's channels are in any picture, added up. */
+/* Returns the sum over channels of a pixel's brightest values in any picture. */
 static float brightest(const pst_problem *p, size_t pixel)
 {
     float most = 0;
@@ -40,7 +39,7 @@ static float brightest(const pst_problem *p, size_t pixel)
     return most;
 }
 
-/* The pixels of the object to the sides of one; returns how many. */
+/* Lists the adjacent pixels on the object; returns their number. */
 static int neighbours_of(const img *mask, size_t pixel, size_t to[4])
 {
     size_t sides[4];
@@ -67,12 +66,12 @@ static float likeness(const pst_problem *p, size_t pixel)
     return ab > 0 ? (float)(ab / sqrt(aa * bb)) : 0;
 }
 
-enum { BRIGHT = 2 }; /* more than any likeness */
+enum { BRIGHT = 2 }; /* more than any similarity */
 
 typedef struct search {
     const pst_problem *problem;
-    float most; /* brightness of what may be dark */
-    img *alike; /* brightness, then likeness */
+    float most; /* largest brightness of pixels that may be dark */
+    img *alike; /* brightness, then similarity */
 } search;
 
 static void measure(void *context, size_t begin, size_t end)
@@ -91,7 +90,7 @@ static void compare(void *context, size_t begin, size_t end)
     }
 }
 
-/* alike: 1 channel, the likeness of dark pixels; BRIGHT elsewhere. */
+/* Finds dark pixels. alike: 1 channel, their similarity to neighbours; BRIGHT elsewhere. */
 static status find_dark(const pst_problem *p, img *alike)
 {
     const merlin_capture *c = p->capture;
@@ -122,7 +121,7 @@ static bool is_unlit(const img *alike, int x, int y)
     return sum < coherent * count;
 }
 
-/* unlit: 1 channel, 1 where no light reaches; *any of them. */
+/* Finds unlit pixels. unlit: 1 channel, 1 where no light arrives; *any tells whether there are some. */
 static status find(const pst_problem *p, img *unlit, bool *any)
 {
     img alike;
@@ -139,7 +138,7 @@ static status find(const pst_problem *p, img *unlit, bool *any)
     return s;
 }
 
-/* They, and the object's pixels next to them. */
+/* Marks these pixels, and the object's pixels next to them. */
 static status with_neighbours(const img *unlit, const img *mask, img *out)
 {
     status s = img_new(out, mask->width, mask->height, 1);
@@ -156,7 +155,7 @@ static status with_neighbours(const img *unlit, const img *mask, img *out)
     return OK;
 }
 
-/* One component of the normals; x: the grid's count. */
+/* Smooths one component of the normals; x: the grid's count. */
 static status smooth(poisson_solver *solver, poisson_grid *g, const img *unlit, int component, double *x, img *normal)
 {
     const double tolerance = 1e-4;

@@ -8,19 +8,20 @@
 #include "stereo/fit/field_fit.h"
 #include "stereo/uncalibrated/inflate.h"
 
-/* A cell's value is the mean of so many of its pixels a side, at most. FEWEST cells tell lights from surface. */
+/* Largest number of pixels per side that are averaged for a cell, and least number of cells that determine lights and
+ * surface. */
 enum { MOST_PIXELS = 6, FEWEST = 24 };
-/* Of a cell's area, at least, on the object; of its pixels, at least, with a value. */
+/* Least share of a cell's area on the object, and of its pixels that have a value. */
 static const float covered = 0.5f, readable = 0.5f;
 
-/* Geman and McClure's residuals are shares of this: values above the ordinary are less certain. */
+/* Returns the precision for Geman and McClure's loss; values above the ordinary are less certain. */
 static float precision_of(float value, float level)
 {
     float above = fmaxf(value - level, 0);
     return 1 / (level * level + above * above + 1e-20f);
 }
 
-/* ---- which cells ---- */
+/* ---- selection of cells ---- */
 
 static bool on_object(const merlin_capture *c, int x, int y)
 {
@@ -91,7 +92,7 @@ static size_t list_pixels(const bundle *b, const bundle_cell *cell, uint32_t *pi
     return count;
 }
 
-/* Room for a cell's pixels under all lights. */
+/* Memory for a cell's pixels under all lights. */
 typedef struct readings {
     size_t stride;
     float *value, *usable, *mean, *known;
@@ -189,7 +190,7 @@ static int corner_number(const bundle *b, int column, int row)
     return b->corner_at[row * (b->columns + 1) + column];
 }
 
-/* Bilinear where all four corners are there, else a tent wide enough to reach some. */
+/* Interpolates bilinearly if all four corners exist, else by a tent wide enough to reach some. */
 float bundle_depth(const bundle *b, float x, float y)
 {
     float column = (x - (float)b->left) / (float)b->side, row = (y - (float)b->top) / (float)b->side;

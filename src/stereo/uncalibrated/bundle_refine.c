@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Levenberg and Marquardt's steps for bundle.h. A cell's albedo is at its best for the rest at any time, so it is
- * eliminated from each step (Schur's complement); corners and lights are left, one dense symmetric system. */
+/* Levenberg-Marquardt steps for bundle.h. A cell's albedo always has its optimum for the other unknowns, so that it is
+ * eliminated from each step (Schur's complement); corners and lights remain, one dense symmetric system. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,35 +9,35 @@
 #include "stereo/algebra/dense.h"
 #include "stereo/uncalibrated/bundle.h"
 
-/* Priors in outliers: of a light's logarithm of distance off the lights' mean; of a bend and a twist of slope 1 between
- * neighbouring cells, each times the number of lights; of the mean depth. */
+/* Weights of priors in units of an outlier: for the logarithm of a light's distance relative to the lights' mean; for a
+ * bend and a twist of slope 1 between neighbouring cells, each times the number of lights; for the mean depth. */
 static const double equal_distance = 1, bending = 0.003, twisting = 0.02, fixed_depth = 1e5;
-/* Steps end at this gain or this damping, which is also of what the unknowns of a kind have on average, by its least
- * share. Of a value's weight, what at least counts as curvature. Lights stay between these distances, in radii of the
- * object. */
+/* Steps end at this gain or this damping, which is partly shared by the unknowns of a kind (shared_damping). Least
+ * share of a value's weight that counts as curvature. Limits of lights' distances in radii of the object. */
 static const double settled = 1e-6, most_damped = 1e8, shared_damping = 0.1;
 static const float nearest = 1.1f, farthest = 60;
 
-/* A point of the surface: m its normal's direction, not unit. */
+/* A point of the surface; m is its normal's direction, not unit. */
 typedef struct patch {
     vec3 at, m;
-    float length; /* of m */
+    float length; /* length of m */
 } patch;
 
-/* What a step is made of: unknowns are the corners, then three a light: two turns about the centre (radians), the
- * logarithm of its distance. */
+/* Equations of a step: unknowns are the corners, then three per light: two rotations about the centre (radians), and
+ * the logarithm of its distance. */
 typedef struct equations {
     int size;
     size_t corners;
     double *matrix; /* lower triangle, row-major */
     double *right, *coupling;
     double *damped, *step;
-    vec3 *turn; /* lights × 3: what a light moves by for its unknowns */
+    vec3 *turn; /* lights × 3: derivatives of a light's position by its unknowns */
     float *old_depth, *old_albedo;
     vec3 *old_position;
 } equations;
 
-/* The slopes s_x, s_y of log depth give (s_x, s_y, 1 + x s_x + y s_y), the cross product of the surface's tangents. */
+/* Computes a patch: the slopes s_x, s_y of log depth give (s_x, s_y, 1 + x s_x + y s_y), the cross product of the
+ * surface's tangents. */
 static patch patch_of(const bundle *b, const bundle_cell *c)
 {
     const float *s = b->log_depth;
@@ -62,14 +62,15 @@ float bundle_shading(const bundle *b, int cell, vec3 light)
     return shading(&p, light);
 }
 
-/* Turned away and dark is as it should be; turned away and bright shall turn back. */
+/* Returns the shading, which for a patch that faces away is zero if the value is dark, and keeps its slope if it is
+ * bright, so that the patch turns back. */
 static float seen_shading(float s, float value, float level)
 {
     return s > 0 || value > 0.1f * level ? s : 0;
 }
 
-/* Geman and McClure's loss of a value, t / (1 + t), by its residual: half the slope over the residual, and half the
- * curvature as far as it is positive, or nearly, so that a step never climbs. */
+/* Geman and McClure's loss of a value, t / (1 + t), by its residual: half the slope divided by the residual, and half
+ * the curvature limited to positive or nearly positive values, so that a step never ascends. */
 typedef struct loss {
     float weight, curvature;
 } loss;
@@ -110,7 +111,7 @@ void bundle_fit_albedo(bundle *b)
 
 /* ---- priors ---- */
 
-/* Quadratic forms of corners in a row: factor · (Σ share·log depth)². */
+/* A callback for quadratic forms of corners: factor · (Σ share·log depth)². */
 typedef void each_form(void *context, const int *corner, const double *share, int count, double factor);
 
 static void list_forms(const bundle *b, each_form *tell, void *context)
@@ -133,7 +134,7 @@ static void list_forms(const bundle *b, each_form *tell, void *context)
 
 typedef struct form_sum {
     const bundle *bundle;
-    equations *equations; /* NULL: the cost alone */
+    equations *equations; /* NULL: cost only */
     double cost;
 } form_sum;
 
@@ -159,7 +160,8 @@ static float log_distance(const bundle *b, int light)
     return logf(vec3_length(vec3_sub(b->position[light], b->centre)));
 }
 
-/* Twice the quadratic forms' halves: matrix is the second derivative's half, as for the values. */
+/* Adds the priors: twice the halves of the quadratic forms, as matrix is half the second derivative, as for the values.
+ */
 static double add_priors(const bundle *b, equations *y)
 {
     form_sum f = {b, y, 0};
@@ -224,7 +226,7 @@ double bundle_light_cost(const bundle *b, int light, vec3 place, float width)
     return cost;
 }
 
-/* What a light's unknowns move it by. */
+/* Computes the derivatives of a light's position by its unknowns. */
 static void find_turns(const bundle *b, equations *y)
 {
     for (int k = 0; k < b->lights; k++) {
@@ -237,14 +239,14 @@ static void find_turns(const bundle *b, equations *y)
     }
 }
 
-/* Derivatives of shading by the corners' log depth and by the light's position. */
+/* Computes derivatives of shading by the corners' log depth and by the light's position. */
 static vec3 shading_slopes(const bundle *b, const bundle_cell *c, const patch *p, vec3 light, float by_corner[4])
 {
     vec3 to = vec3_sub(light, p->at), m = vec3_scale(p->m, 1 / p->length);
     float square = fmaxf(vec3_dot(to, to), 1e-12f), cube = 1 / (square * sqrtf(square)), facing = vec3_dot(m, to);
     vec3 by_light = vec3_scale(vec3_fma(m, -3 * facing / square, to), cube);
     float along = -vec3_dot(by_light, p->at) / 4;
-    /* of m / |m|: what moves across it */
+    /* derivative of m / |m|: the component perpendicular to it */
     vec3 across = vec3_scale(vec3_fma(to, -facing, m), cube / p->length);
     float x = (across.x + c->x * across.z) / (2 * b->step), y = (across.y + c->y * across.z) / (2 * b->step);
     by_corner[0] = along - x + y;
@@ -254,7 +256,7 @@ static vec3 shading_slopes(const bundle *b, const bundle_cell *c, const patch *p
     return by_light;
 }
 
-/* One value: its derivatives by the cell's corners, the light's unknowns and the albedo. */
+/* Derivatives of one value by the cell's corners, the light's unknowns and the albedo. */
 typedef struct slopes {
     float corner[4], light[3], albedo;
 } slopes;
@@ -282,7 +284,7 @@ static void add_value(const bundle *b, equations *y, const bundle_cell *c, int l
     }
 }
 
-/* square, left: the albedo's own curvature and slope. */
+/* Eliminates the albedo. square, left: its own curvature and slope. */
 static void eliminate_albedo(const bundle *b, equations *y, const bundle_cell *c, double square, double left)
 {
     size_t n = (size_t)y->size;
@@ -372,7 +374,7 @@ static void undo_step(bundle *b, const equations *y)
         b->cell[i].albedo = y->old_albedo[i];
 }
 
-/* Tries ever shorter steps; false if none gains. */
+/* Tries shorter and shorter steps; returns false if none gains. */
 static bool descend(bundle *b, equations *y, float width, double *damping)
 {
     double before = b->cost;

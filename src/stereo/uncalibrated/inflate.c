@@ -8,11 +8,11 @@
 #include "base/vec.h"
 #include "image/resize.h"
 
-/* An object with a longer side is solved smaller and enlarged: sweeps take time with the third power of the side, and
- * floats are too coarse for the sums of a large one. */
+/* Largest side that is solved; larger objects are solved at this size and enlarged, as the time of sweeps grows with
+ * the third power of the side, and floats are too inaccurate for the sums of a large one. */
 enum { LARGEST = 512 };
 
-/* u with one row or column of zeros around the picture, so that neighbours need no test for its edges. */
+/* The unknown u with a border of one row or column of zeros, so that neighbours need no test for the edges. */
 typedef struct field {
     int width, height;
     float *u;
@@ -45,8 +45,8 @@ static status field_new(const img *mask, field *f)
     return OK;
 }
 
-/* Successive over-relaxation with Young's best factor for a square of the picture's longer side; three sweeps a pixel
- * of that side bring the error far below what half-pixel edges of the mask leave. */
+/* Solves by successive over-relaxation with Young's optimal factor for a square of the picture's longer side; three
+ * sweeps per pixel of that side reduce the error far below that of the mask's edges of half a pixel. */
 static void solve_poisson(field *f)
 {
     int side = f->width > f->height ? f->width : f->height;
@@ -83,7 +83,7 @@ static box box_of(const field *f)
     return right < 0 ? (box){0, 0, 1, 1} : (box){left, top, right - left + 1, bottom - top + 1};
 }
 
-/* u of the part of the mask in the box, in its size. */
+/* Computes u for the part of the mask in the box, in its size. */
 static status solve_smaller(const img *mask, const box *b, float shrink, img *u)
 {
     img part = {0}, small_mask = {0}, small = {0};
@@ -128,7 +128,8 @@ static status solve(const img *mask, field *f)
     return s;
 }
 
-/* With h = √u the normal (-∂h/∂x, -∂h/∂y, 1) points along (-∂u/∂x, -∂u/∂y, 2 √u), which stays finite at the edge. */
+/* Writes normals and heights. With h = √u the normal (-∂h/∂x, -∂h/∂y, 1) is parallel to (-∂u/∂x, -∂u/∂y, 2 √u), which
+ * is finite at the edge. */
 static void write_surface(const field *f, img *normal, img *height)
 {
     size_t stride = (size_t)f->width + 2;

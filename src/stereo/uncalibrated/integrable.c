@@ -8,28 +8,30 @@
 
 enum { PASSES = 5, GRID = 12 };
 
-/* Cosine between the lights' mean and the camera's axis, at least: lights from the side do not show an object. */
+/* Least cosine between the lights' mean and the camera's axis, as lights from the side do not show an object. */
 #define FRONTAL 0.8
-/* Cost of a surface that is nothing like the balloon, in costs of the most integrable one
- * (docs/notes/unknown_lights.md has what that is worth, and how the rest was measured). */
+/* Weight of the difference from the inflated outline, in units of the most integrable surface's cost
+ * (docs/notes/unknown_lights.md states its effect, and how the constants below were measured). */
 static const double inflated_weight = 30;
-/* Of an object's width (the root of its pixels), one way, over which it is averaged, and pixels at least. Rendered
- * objects of 64 pixels with noise of 1 % are 20 degrees off without that and 14 with it, without noise 7 either way;
- * twice as much is no better. */
+/* Radius of averaging as a share of an object's width (the square root of its pixels), and in pixels at least. Rendered
+ * objects of 64 pixels with noise of 1 % have errors of 20 degrees without it and 14 with it, without noise 7 in both
+ * cases; twice the radius is no better. */
 static const double averaged = 1.0 / 96;
 enum { LEAST_AVERAGED = 2 };
-/* Of the integrability form's trace, at the best rotation: from here on rendered objects were 20 to 46 degrees off,
- * below 0.05 nearly all by less than 15. */
+/* Limit of the cost at the best rotation as a share of the integrability form's trace: above it rendered objects had
+ * errors of 20 to 46 degrees, below 0.05 nearly all had less than 15. */
 static const double not_integrable = 0.08;
-/* Correlation of the normals' sideways components with the balloon's, below which its sign is a matter of chance: bumps
- * on a plane have 0.02, objects 0.5 to 1. */
+/* Limit of the correlation of the normals' sideways components with those of the inflated outline, below which the sign
+ * is random: bumps on a plane have 0.02, objects 0.5 to 1. */
 static const double unlike = 0.4;
 
-/* Degrees between the rotations without and with the balloon: of 69 rendered and real captures that came out less than
- * 10 degrees off two had more or were doubted otherwise, of 19 that were 15 or more off four neither. */
+/* Limit in degrees of the difference between the rotations without and with the inflated outline: of 69 rendered and
+ * real captures with errors below 10 degrees two had more or had another warning, of 19 with 15 or more four had
+ * neither. */
 static const double far_apart = 22;
 
-/* One pixel's equation: b3 ∂y b1 − b1 ∂y b3 = b3 ∂x b2 − b2 ∂x b3 for b = A b', linear in the six minors of A. */
+/* Computes one pixel's equation: b3 ∂y b1 − b1 ∂y b3 = b3 ∂x b2 − b2 ∂x b3 for b = A b', linear in the six minors of A.
+ */
 static bool integrability_row(const pst_pseudo *f, size_t at, double row[6])
 {
     int width = f->problem->capture->width, height = f->problem->capture->height;
@@ -59,8 +61,9 @@ status pst_too_thin(void)
     return fail(MERLIN_BAD_INPUT, "the mask is too thin to solve without known lights");
 }
 
-/* The equations' 6×6 quadratic form by iteratively reweighted least squares (Cauchy's loss: the equation fails across
- * depth jumps, and where the surface turns most), for the minors (A3 × A1, A3 × A2) of the last pass. */
+/* Computes the equations' 6×6 quadratic form by iteratively reweighted least squares (Cauchy's loss, as the equation
+ * fails across depth jumps, and where the surface curves most), with the minors (A3 × A1, A3 × A2) of the previous
+ * pass. */
 static status integrability_form(const pst_pseudo *f, const double minor[6], double *scale, double form[36])
 {
     const pst_problem *p = f->problem;
@@ -84,12 +87,12 @@ static status integrability_form(const pst_pseudo *f, const double minor[6], dou
             form[j] += w * row[j / 6] * row[j % 6];
         absolute += fabs(r);
     }
-    /* without minors there are no residuals yet, and all equations count as well */
+    /* without minors there are no residuals yet, and all equations have equal weight */
     if (absolute > 0) *scale = fmax(absolute / (double)count, 1e-12);
     return OK;
 }
 
-/* Rotation matrix of a rotation vector times a, row-major. */
+/* Multiplies the rotation matrix of a rotation vector by a, row-major. */
 static void turned(const double turn[3], const double a[9], double out[9])
 {
     double angle = sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]), s = sin(angle), c = cos(angle);
@@ -109,7 +112,7 @@ static void turned(const double turn[3], const double a[9], double out[9])
         out[i] = r[i / 3 * 3] * a[i % 3] + r[i / 3 * 3 + 1] * a[3 + i % 3] + r[i / 3 * 3 + 2] * a[6 + i % 3];
 }
 
-/* A rotation's minors: A3 × A1 = A2, A3 × A2 = −A1. */
+/* Computes a rotation's minors: A3 × A1 = A2, A3 × A2 = −A1. */
 static void minors_of(const double a[9], double minor[6])
 {
     for (int j = 0; j < 3; j++) {
@@ -127,24 +130,25 @@ static double form_at(const double form[36], const double a[9])
     return sum;
 }
 
-/* What rotations cost. */
+/* Terms of a rotation's cost. */
 typedef struct rotation_cost {
-    double form[36];   /* integrability's */
-    double balloon[9]; /* mean of the balloon's unit normals times the surface's, transposed */
-    double pull;       /* of the balloon */
+    double form[36];    /* integrability form */
+    double inflated[9]; /* mean of the inflated outline's unit normals times the surface's, transposed */
+    double pull;        /* weight of the inflated outline */
 } rotation_cost;
 
-/* How much a is like the balloon to the side and toward the camera; below 0: its mirror image is. */
+/* Measures the similarity of a to the inflated outline, sideways and toward the camera; below 0: its mirror image is
+ * more similar. */
 static void measure_likeness(const rotation_cost *c, const double a[9], double *aside, double *toward)
 {
     *aside = *toward = 0;
     for (int j = 0; j < 6; j++)
-        *aside += a[j] * c->balloon[j];
+        *aside += a[j] * c->inflated[j];
     for (int j = 6; j < 9; j++)
-        *toward += a[j] * c->balloon[j];
+        *toward += a[j] * c->inflated[j];
 }
 
-/* Whichever of its four mirror images is most like the balloon. */
+/* Returns the cost of the one of its four mirror images that is most similar to the inflated outline. */
 static double cost_at(const rotation_cost *c, const double a[9])
 {
     double aside, toward;
@@ -152,7 +156,7 @@ static double cost_at(const rotation_cost *c, const double a[9])
     return form_at(c->form, a) + c->pull * (1 - fabs(aside) - fabs(toward));
 }
 
-/* To that image. */
+/* Replaces a by that image. */
 static void mirror(const rotation_cost *c, double a[9])
 {
     double aside, toward;
@@ -161,7 +165,7 @@ static void mirror(const rotation_cost *c, double a[9])
         a[j] *= (j < 6 ? aside : toward) < 0 ? -1 : 1;
 }
 
-/* Downhill from a by turns about the axes that are halved when none helps. */
+/* Descends from a by rotations about the axes, which are halved when none helps. */
 static void descend(const rotation_cost *c, double reach, double a[9])
 {
     double best = cost_at(c, a), trial[9];
@@ -188,14 +192,14 @@ static void compare_with_inflated(const pst_pseudo *f, double products[9])
         vec3 b = f->b[i];
         double length = (double)vec3_length(b);
         if (!(length > 0) || !isfinite(length)) continue;
-        const float *n = f->balloon->data + 3 * (size_t)p->pixel[i];
+        const float *n = f->inflated->data + 3 * (size_t)p->pixel[i];
         const double unit[3] = {b.x / length, b.y / length, b.z / length};
         for (int j = 0; j < 9; j++)
             products[j] += (double)n[j / 3] * unit[j % 3] / (double)p->pixel_count;
     }
 }
 
-/* Of grid point k, counted along three turns. */
+/* Computes grid point k, counted along three rotations. */
 static void grid_rotation(int k, double out[9])
 {
     static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -209,14 +213,14 @@ static void grid_rotation(int k, double out[9])
     turned(last, tilted, out);
 }
 
-/* Whether it leaves the lights' mean on the camera's side. */
+/* Tells whether a rotation leaves the lights' mean on the camera's side. */
 static bool is_frontal(const double a[9], vec3 mean)
 {
     return fabs((double)pst_transform(a, mean).z) >= FRONTAL;
 }
 
-/* The best of those that are frontal, downhill from every point of a grid: a ball's cap is almost as integrable if it
- * is turned into a saddle, and what is between the two is less than what the grid's own points are off. */
+/* Finds the best frontal rotation, descending from every point of a grid: a ball's cap is almost as integrable if it is
+ * turned into a saddle, and the difference between the two is less than the error of the grid's points. */
 static status search(const rotation_cost *c, vec3 mean, double a[9])
 {
     double best = HUGE_VAL;
@@ -243,7 +247,8 @@ static double trace(const double form[36])
     return sum;
 }
 
-/* Of the rotations near one of these minors; share: the pull, in traces of the form. */
+/* Sets up the cost of rotations near one with these minors; share: weight of the inflated outline, in traces of the
+ * form. */
 static status weigh(const pst_pseudo *f, const double minor[6], double share, double *scale, rotation_cost *c)
 {
     status s = integrability_form(f, minor, scale, c->form);
@@ -251,7 +256,7 @@ static status weigh(const pst_pseudo *f, const double minor[6], double share, do
     return s;
 }
 
-/* The best rotation. */
+/* Finds the best rotation. */
 static status rotate_by(const pst_pseudo *f, vec3 mean, double share, rotation_cost *c, double a[9])
 {
     double minor[6] = {0}, scale = HUGE_VAL;
@@ -265,7 +270,7 @@ static status rotate_by(const pst_pseudo *f, vec3 mean, double share, rotation_c
     return s;
 }
 
-/* The share of the surface that faces the other way than the whole. */
+/* Returns the share of the surface that faces away while the whole faces the camera. */
 static double share_away(const pst_pseudo *f, const double a[9])
 {
     size_t count = f->problem->pixel_count, away = 0;
@@ -278,23 +283,24 @@ static double share_away(const pst_pseudo *f, const double a[9])
     return (double)(sum < 0 ? count - away : away) / (double)count;
 }
 
-/* Between what the normals of surface and balloon have sideways, 1 for the same. */
+/* Returns the correlation of the sideways components of the surface's normals with the inflated outline's, 1 for equal
+ * ones. */
 static double sideways_correlation(const pst_pseudo *f, const double a[9])
 {
     const pst_problem *p = f->problem;
-    double both = 0, surface = 0, balloon = 0;
+    double both = 0, surface = 0, inflated = 0;
     for (size_t i = 0; i < p->pixel_count; i++) {
         vec3 n = vec3_normalize(pst_transform(a, f->b[i]));
-        const float *m = f->balloon->data + 3 * (size_t)p->pixel[i];
+        const float *m = f->inflated->data + 3 * (size_t)p->pixel[i];
         if (!isfinite(n.x)) continue;
         both += (double)(n.x * m[0] + n.y * m[1]);
         surface += (double)(n.x * n.x + n.y * n.y);
-        balloon += (double)(m[0] * m[0] + m[1] * m[1]);
+        inflated += (double)(m[0] * m[0] + m[1] * m[1]);
     }
-    return both / fmax(sqrt(surface * balloon), 1e-300);
+    return both / fmax(sqrt(surface * inflated), 1e-300);
 }
 
-/* In degrees; of a reflection and a rotation 180. */
+/* Returns the angle between two rotations in degrees; between a reflection and a rotation 180. */
 static double degrees_between(const double a[9], const double b[9])
 {
     double trace_of_both = 0;
@@ -303,7 +309,7 @@ static double degrees_between(const double a[9], const double b[9])
     return acos(fmax(-1, fmin(1, (trace_of_both - 1) / 2))) * 57.29577951;
 }
 
-/* By integrability alone, which says how far it can be trusted; then with the balloon. */
+/* Finds the rotation by integrability alone, which shows how reliable it is; then with the inflated outline. */
 static status rotate(const pst_pseudo *f, vec3 mean, pst_rotation *out)
 {
     rotation_cost c = {.pull = 0};
@@ -311,7 +317,7 @@ static status rotate(const pst_pseudo *f, vec3 mean, pst_rotation *out)
     if (s != OK) return s;
     bool faces_away = share_away(f, out->at) > PST_MOST_AWAY;
     double least = form_at(c.form, out->at) / fmax(trace(c.form), 1e-300);
-    compare_with_inflated(f, c.balloon);
+    compare_with_inflated(f, c.inflated);
     double alone[9];
     memcpy(alone, out->at, sizeof alone);
     mirror(&c, alone);
@@ -329,7 +335,7 @@ static float *place(const img *sums, const pst_bounds *r, const pst_problem *p, 
     return img_at(sums, (int)(p->pixel[i] % width) - r->left, (int)(p->pixel[i] / width) - r->top);
 }
 
-/* Between neighbouring pixels the surface turns by less than noise does. */
+/* Averages over a neighbourhood, as between adjacent pixels the surface turns by less than the noise. */
 static status average(const pst_pseudo *f)
 {
     const pst_problem *p = f->problem;
@@ -343,7 +349,7 @@ static status average(const pst_pseudo *f)
         vec3 b = f->b[i];
         if (isfinite(vec3_dot(b, b))) memcpy(place(&sums, &r, p, i), &(float[4]){b.x, b.y, b.z, 1}, 4 * sizeof(float));
     }
-    /* half the width twice is a tent */
+    /* two boxes of half the width make a tent */
     s = img_box_sums(&sums, radius / 2);
     if (s == OK) s = img_box_sums(&sums, radius - radius / 2);
     for (size_t i = 0; i < p->pixel_count && s == OK; i++) {

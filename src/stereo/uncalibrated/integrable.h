@@ -1,34 +1,35 @@
 /* SPDX-License-Identifier: MIT */
-/* The last step to the lights of uncalibrated: a surface that is known up to a rotation or reflection is turned to what
- * it must be to be one.
+/* The last step of uncalibrated photometric stereo with distant lights: resolves the rotation or reflection up to which
+ * the surface is known.
  *
  * Normals of a surface are integrable (A. Yuille, D. Snow, Shape and albedo from multiple images using integrability,
- * CVPR 1997): that fixes the rotation, searched for among those that leave the lights' mean on the camera's side, but
- * for a sign, convex or concave. Shadows, highlights and a camera's curve bend it. So the worse the best rotation is,
- * the more counts a second prior: the object is like a balloon of its outline. That tells the sign, too. */
+ * CVPR 1997): that determines the rotation, searched for among those that leave the lights' mean on the camera's side,
+ * except for a sign, convex or concave. Shadows, highlights and perspective distort it. Therefore, the worse the best
+ * rotation is, the more weight a second prior has: the object is similar to its inflated outline (inflate.h). That
+ * determines the sign, too. */
 #ifndef MERLIN_STEREO_UNCALIBRATED_INTEGRABLE_H
 #define MERLIN_STEREO_UNCALIBRATED_INTEGRABLE_H
 
 #include "stereo/fit/problem.h"
 
-/* Of a surface's pixels, at most, that face away: what is seen faces the camera. Where lights were found, up to a
- * twentieth do, by noise; where they were not, half. */
+/* Largest share of a surface's pixels that face away, as visible pixels face the camera. With correct lights up to a
+ * twentieth do because of noise; with wrong ones, half. */
 #define PST_MOST_AWAY 0.25
-/* Fewer pixels have no lights found by them. */
+/* Least number of pixels from which lights are found. */
 enum { PST_FEWEST_PIXELS = 100 };
 
-/* A surface up to a 3×3 matrix, and where its pixels are. */
+/* A surface up to a 3×3 matrix, and its pixels' positions. */
 typedef struct pst_pseudo {
     const pst_problem *problem;
-    const img *balloon; /* unit normals of the outline's (inflate.h) */
-    vec3 *b;            /* a pixel of the problem */
-    int32_t *slot;      /* picture position to that, -1 outside the mask */
+    const img *inflated; /* unit normals of the inflated outline (inflate.h) */
+    vec3 *b;             /* one per pixel of the problem */
+    int32_t *slot;       /* index by position in the picture, -1 outside the mask */
 } pst_pseudo;
 
 typedef struct pst_rotation {
     double at[9]; /* row-major, of determinant 1 or -1 */
-    bool unsure; /* the most integrable rotation is hardly integrable, has much of the surface face away, or is far from
-                  * the one that the balloon makes of it, or neither sign is like the balloon */
+    bool unsure;  /* whether the most integrable rotation is hardly integrable, has much of the surface facing away, or
+                     differs much from the one with the inflated outline, or neither sign is similar to that */
 } pst_rotation;
 
 static inline vec3 pst_transform(const double m[9], vec3 v)
@@ -37,11 +38,12 @@ static inline vec3 pst_transform(const double m[9], vec3 v)
                      (float)(m[6] * v.x + m[7] * v.y + m[8] * v.z));
 }
 
-/* f->b, up to a rotation or reflection, becomes its mean over a neighbourhood. mean_light: of the lights in b's space.
- * MERLIN_BAD_INPUT if the mask is too thin, or no rotation leaves the lights before the object. */
+/* Finds the rotation; f->b, known up to a rotation or reflection, is replaced by its mean over a neighbourhood.
+ * mean_light: of the lights in b's space. MERLIN_BAD_INPUT if the mask is too thin, or no rotation leaves the lights in
+ * front of the object. */
 status pst_find_rotation(const pst_pseudo *f, vec3 mean_light, pst_rotation *out);
 
-/* MERLIN_BAD_INPUT, in words. */
+/* Fails with MERLIN_BAD_INPUT and a message. */
 status pst_too_thin(void);
 
 #endif

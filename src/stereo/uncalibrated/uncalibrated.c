@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Lights of unknown position or direction. They are found twice, as near ones (uncalibrated_near.c) and as distant ones
- * (uncalibrated_distant.c); whichever explain a sample of pixels better are used, the robust fit does the rest. The
- * further near lights are, the less they fall off, and the more easily a bowl under them passes for a ball whose
- * contrast a camera flattened: then the surface that is more like a balloon of the object's outline is taken.
+/* Photometric stereo with lights of unknown position or direction. They are estimated twice, as near
+ * (uncalibrated_near.c) and as distant ones (uncalibrated_distant.c); those that explain a sample of pixels better are
+ * used, and the robust fit does the rest. The further near lights are, the less they fall off, and the less a bowl
+ * under them differs from a ball photographed with low contrast: then the surface more similar to the inflated outline
+ * is used.
  *
- * Without a camera the pictures are taken for orthographic, which is a perspective from far away. */
+ * Without a camera the pictures are taken to be orthographic, which is a perspective from far away. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -17,35 +18,35 @@
 #include "stereo/uncalibrated/uncalibrated_parts.h"
 
 enum { FEWEST = 7, SAMPLE = 400, ADMITTING = 192, DIFFERING = 1500 };
-/* Near lights have an unknown a picture more, and distance to spare: they must cost less than this share of what
- * distant ones do. Measured on rendered objects: 0.1 to 0.7 where lights were an object's size or two away, 0.84 to 1.2
- * where they were distant. */
+/* Ratio of near to distant lights' costs below which near ones are used, as they have one more unknown per picture and
+ * a free distance. Measured on rendered objects: 0.1 to 0.7 if lights were an object's size or two away, 0.84 to 1.2 if
+ * they were distant. */
 static const double clearly = 0.8;
-/* Times the cost of an answer of which more than PST_MOST_AWAY faces away. */
+/* Factor of the cost of a solution of which more than PST_MOST_AWAY faces away. */
 static const double absurd = 1e3;
-/* Of the camera that stands for none, in widths of the picture. */
+/* Focal length of the camera that stands for none, in widths of the picture. */
 static const float far_away = 30;
-/* Of near lights, in the object's radii: from the second on they are distant ones, whose distances stand for their
- * strengths; from the first on they are not believed against the outline. Measured: 2.2 to 4.1 where they were truly
- * near (bowls under them, too), 8 and more where they were distant. What comes of it is in
- * docs/notes/unknown_lights.md. */
+/* Distances of near lights in the object's radii: from the second on they are distant ones, whose distances stand for
+ * their strengths; from the first on they are not preferred against the outline. Measured: 2.2 to 4.1 if they were
+ * truly near (also with bowls), 8 and more if they were distant. The effect is stated in docs/notes/unknown_lights.md.
+ */
 static const double doubtful = 5, farthest = 10;
-/* How much less like the balloon a surface may be than under distant lights, as a mean cosine. */
+/* Largest loss of similarity to the inflated outline compared with distant lights, as a mean cosine. */
 static const double less_like = 0.3;
 
-/* Near lights are doubted from this cost of a value on, and below this likeness to the balloon. Measured: of 15
- * captures that came out less than 10 degrees off none had more than 0.19 or less than 0.6; a cat and a plane under
- * distant lights that were taken for near ones, 31 and 34 degrees off, 0.26 and 0.48. */
+/* Cost per value from which on, and similarity to the inflated outline below which, there is a warning about near
+ * lights. Measured: of 15 captures with errors below 10 degrees none had more than 0.19 or less than 0.6; a cat and a
+ * plane under distant lights that were taken for near ones, with errors of 31 and 34 degrees, had 0.26 and 0.48. */
 static const double costly = 0.2, unlike = 0.55;
 
 /* Lights of one kind, and how well they explain the pictures. */
 typedef struct hypothesis {
-    merlin_light *light; /* count */
-    img depth;           /* near lights: goes with them; else empty */
+    merlin_light *light; /* count lights */
+    img depth;           /* depth found with near lights; else empty */
     double cost;
-    double cost_of_value;  /* the same for each value of the sample, in [0, 1] */
-    double likeness;       /* mean cosine between the sample's normals and the balloon's */
-    pst_rotation rotation; /* distant lights: how they were told */
+    double cost_of_value;  /* the same per value of the sample, in [0, 1] */
+    double likeness;       /* mean cosine between the sample's normals and those of the inflated outline */
+    pst_rotation rotation; /* rotation found with distant lights */
 } hypothesis;
 
 static pinhole perspective_of(const merlin_capture *c)
@@ -69,16 +70,16 @@ static double share_away(const pst_field *f)
     return (double)away / (double)f->count;
 }
 
-static double likeness(const pst_field *f, const img *balloon)
+static double likeness(const pst_field *f, const img *inflated)
 {
     double sum = 0;
     for (size_t i = 0; i < f->count; i++)
-        sum += (double)vec3_dot(vec3_normalize(f->b[i]), vec3_of(balloon->data + 3 * (size_t)f->pixel[i]));
+        sum += (double)vec3_dot(vec3_normalize(f->b[i]), vec3_of(inflated->data + 3 * (size_t)f->pixel[i]));
     return sum / (double)f->count;
 }
 
-/* What the robust fit leaves of a sample. */
-static status evaluate(const pst_problem *p, const img *balloon, hypothesis *h)
+/* Computes the cost by the robust fit of a sample. */
+static status evaluate(const pst_problem *p, const img *inflated, hypothesis *h)
 {
     uint32_t *pixel;
     pst_problem under = *p;
@@ -92,13 +93,13 @@ static status evaluate(const pst_problem *p, const img *balloon, hypothesis *h)
     s = f.b ? pst_field_fit(&f, &h->cost) : fail(MERLIN_NO_MEMORY, "no memory for a sample of %zu pixels", f.count);
     h->cost_of_value = h->cost / fmax((double)values, 1);
     if (s == OK && share_away(&f) > PST_MOST_AWAY) h->cost *= absurd;
-    if (s == OK) h->likeness = likeness(&f, balloon);
+    if (s == OK) h->likeness = likeness(&f, inflated);
     free(f.b);
     free(pixel);
     return s;
 }
 
-/* Whether a highlight's lobe is worth fitting; f's pixels become all of the problem's. */
+/* Decides whether to fit a highlight's lobe; f's pixels become all of the problem's. */
 static status admit_lobe(pst_field *f, pst_lobe *lobe)
 {
     uint32_t *sample;
@@ -112,8 +113,8 @@ static status admit_lobe(pst_field *f, pst_lobe *lobe)
     return s;
 }
 
-/* Normals from the depth that came with the lights, then a finer depth from these. More rounds gain nothing: that depth
- * fits the lights that were found with it, errors and all. */
+/* Fits normals with the depth found with the lights, then integrates a finer depth. Further rounds gain nothing, as
+ * that depth fits the lights that were found with it, including their errors. */
 static status solve_near(const pst_problem *p, const img *depth, merlin_surface *out)
 {
     const pst_integration how = {.prior = depth, .prior_weight = PST_KEEP_DEPTH};
@@ -130,7 +131,7 @@ static status solve_near(const pst_problem *p, const img *depth, merlin_surface 
     return s;
 }
 
-/* Of near lights, in the object's radii. */
+/* Returns the mean distance of near lights in the object's radii. */
 static double mean_distance(const pst_problem *p, const hypothesis *h)
 {
     const pinhole *camera = &p->capture->camera;
@@ -141,32 +142,32 @@ static double mean_distance(const pst_problem *p, const hypothesis *h)
     return sum / (double)radius / p->capture->count;
 }
 
-static status find_near(const pst_problem *p, const img *balloon, hypothesis *h, double *distance)
+static status find_near(const pst_problem *p, const img *inflated, hypothesis *h, double *distance)
 {
     status s = pst_find_near_lights(p, &p->capture->camera, h->light, &h->depth);
     if (s != OK) return s;
     *distance = mean_distance(p, h);
     if (*distance >= farthest) return fail(MERLIN_BAD_INPUT, "the lights are not near");
-    return evaluate(p, balloon, h);
+    return evaluate(p, inflated, h);
 }
 
-static status find_distant(const pst_problem *p, const img *balloon, hypothesis *h)
+static status find_distant(const pst_problem *p, const img *inflated, hypothesis *h)
 {
-    status s = pst_find_distant_lights(p, balloon, h->light, &h->rotation);
-    return s == OK ? evaluate(p, balloon, h) : s;
+    status s = pst_find_distant_lights(p, inflated, h->light, &h->rotation);
+    return s == OK ? evaluate(p, inflated, h) : s;
 }
 
-/* Lights of a kind that cannot be have an infinite cost. */
+/* Finds both kinds of lights; impossible ones have an infinite cost. */
 static status find_both(const pst_problem *p, hypothesis *near, hypothesis *distant)
 {
-    img balloon, height;
+    img inflated, height;
     double distance = 0;
-    status s = pst_inflate(&p->capture->mask, &balloon, &height);
+    status s = pst_inflate(&p->capture->mask, &inflated, &height);
     if (s != OK) return s;
     img_free(&height);
-    status found = find_near(p, &balloon, near, &distance);
-    if (found == OK || found == MERLIN_BAD_INPUT) s = find_distant(p, &balloon, distant);
-    img_free(&balloon);
+    status found = find_near(p, &inflated, near, &distance);
+    if (found == OK || found == MERLIN_BAD_INPUT) s = find_distant(p, &inflated, distant);
+    img_free(&inflated);
     if (found != OK && found != MERLIN_BAD_INPUT) return found;
     if (s != OK && (s != MERLIN_BAD_INPUT || found != OK)) return s;
     if (s != OK) distant->cost = HUGE_VAL;
@@ -175,7 +176,8 @@ static status find_both(const pst_problem *p, hypothesis *near, hypothesis *dist
     return OK;
 }
 
-/* The lights go to the surface; a depth and places in a space that no camera was known for do not. */
+/* Solves with these lights and stores them in the surface, but no depth and positions in the space of an unknown
+ * camera. */
 static status solve_as(const pst_problem *p, hypothesis *h, bool camera_known, merlin_surface *out)
 {
     out->lights = h->light;
@@ -192,8 +194,8 @@ static status solve_as(const pst_problem *p, hypothesis *h, bool camera_known, m
     return s;
 }
 
-/* A plane under distant lights has pictures that differ in nothing but brightness, and near lights explain them too, as
- * well as any others. */
+/* Fails for a plane under distant lights, whose pictures differ only in brightness, so that any lights explain them
+ * equally well. */
 static status check_not_flat(const pst_problem *p)
 {
     pst_samples m;

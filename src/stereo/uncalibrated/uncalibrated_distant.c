@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* Distant lights of unknown direction.
+/* Estimates distant lights of unknown direction.
  *
- * 1. The matrix of values is factored into lights and surface by its singular vectors, highlights cut off; the factors
- *    are then refitted by robust weights, because shadows and highlights are not of rank three. An unknown 3×3 matrix
- *    is left between the factors.
- * 2. Prior: most lights are equally strong or, where that cannot be or the other is so far more exactly, most of the
- *    surface has one albedo. It leaves a rotation or reflection (unit_quadric.h).
- * 3. That is found by integrability and by the outline (integrable.h).
- * 4. With the lights found, their strengths among them, the robust solver does the rest. */
+ * 1. The matrix of values is factored into lights and surface by its singular vectors, with highlights cut off; the
+ *    factors are then refitted by robust weights, because shadows and highlights are not of rank three. An unknown 3×3
+ *    matrix remains between the factors.
+ * 2. Prior: most lights have equal strength or, if that is impossible or the alternative is much more exact, most of
+ * the
+ *    surface has one albedo. A rotation or reflection remains (unit_quadric.h).
+ * 3. It is found by integrability and by the outline (integrable.h).
+ * 4. With the lights and their strengths known, the robust solver does the rest. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -21,8 +22,8 @@
 
 enum { SAMPLE = 1500, REFITS = 30 };
 
-/* Lights whose strengths differ by more are not meant to be equal, nor are those that do so this many times more than
- * the surface's albedos: noise alone has albedos differ three times more, one albedo under lights that differ, half as
+/* Variation of lights' strengths above which they are not considered equal, unless it is less than this many times that
+ * of the surface's albedos: noise alone makes albedos vary three times more, one albedo under unequal lights half as
  * much or less. */
 static const double uneven = 0.07, plainly = 2;
 
@@ -31,14 +32,14 @@ typedef struct lights3 {
     float *x, *y, *z; /* padded */
 } lights3;
 
-/* Each light from the surface, by the surface's weights. */
+/* Fits each light to the surface with the surface's weights. */
 static void refit_lights(const pst_samples *m, lights3 *l)
 {
     for (int k = 0; k < l->count; k++) {
         float a[6] = {0};
         vec3 right = {0, 0, 0};
         for (size_t i = 0; i < m->count; i++) {
-            /* of equal weight whatever the albedo */
+            /* equal weight whatever the albedo */
             vec3 b = m->b[i];
             float w = m->weight[i * m->padded + (size_t)k] / fmaxf(vec3_dot(b, b), 1e-12f);
             pst_add_outer3(a, vec3_scale(b, w), b);
@@ -62,7 +63,7 @@ static status factor(const pst_problem *p, lights3 *l)
     for (int k = 0; s == OK && k < 3 * l->count; k++)
         mean[k % 3] += basis[k] * basis[k] / l->count;
     for (int k = 0; s == OK && k < l->count; k++) {
-        /* white: the robust fit's widths are shares of |b|, which must mean the same in all directions */
+        /* whitened: the robust fit's widths are shares of |b|, which must mean the same in all directions */
         l->x[k] = (float)(basis[3 * k] / sqrt(3 * mean[0]));
         l->y[k] = (float)(basis[3 * k + 1] / sqrt(3 * mean[1]));
         l->z[k] = (float)(basis[3 * k + 2] / sqrt(3 * mean[2]));
@@ -94,8 +95,8 @@ static void transform_lights(const double m[9], lights3 *l)
     }
 }
 
-/* Lights become equally strong or, if they cannot or the surface is plainly of one albedo, that does; up to a
- * rotation. */
+/* Transforms the lights to equal strength or, if that is impossible or the surface plainly has one albedo, the surface
+ * to equal albedo; up to a rotation. */
 static status straighten(pst_pseudo *f, lights3 *l)
 {
     unit_quadric strength, albedo;
@@ -121,7 +122,7 @@ static status straighten(pst_pseudo *f, lights3 *l)
     return OK;
 }
 
-/* The pseudo lights become directions. */
+/* Converts the pseudo lights to directions. */
 static status resolve(pst_pseudo *f, lights3 *l, pst_rotation *rotation)
 {
     status s = straighten(f, l);
@@ -130,7 +131,7 @@ static status resolve(pst_pseudo *f, lights3 *l, pst_rotation *rotation)
     return s;
 }
 
-/* The surface under the pseudo lights, at every pixel. */
+/* Computes the surface under the pseudo lights at every pixel. */
 static status pseudo_surface(const pst_problem *p, const lights3 *l, pst_pseudo *f)
 {
     pst_field field = {.problem = p, .pixel = p->pixel, .count = p->pixel_count};
@@ -169,12 +170,12 @@ static status name_lights(const pst_problem *p, const lights3 *l, merlin_light *
     return pst_check_directions(light, l->count);
 }
 
-status pst_find_distant_lights(const pst_problem *p, const img *balloon, merlin_light *light, pst_rotation *rotation)
+status pst_find_distant_lights(const pst_problem *p, const img *inflated, merlin_light *light, pst_rotation *rotation)
 {
     if (p->pixel_count < PST_FEWEST_PIXELS) return pst_too_thin();
     int count = p->capture->count;
     size_t padded = (size_t)pst_padded(count);
-    pst_pseudo f = {.balloon = balloon};
+    pst_pseudo f = {.inflated = inflated};
     lights3 l = {.count = count, .x = calloc(3 * padded, sizeof(float))};
     if (!l.x) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", count);
     l.y = l.x + padded;

@@ -1,37 +1,38 @@
 /* SPDX-License-Identifier: MIT */
-/* Near lights of unknown position. Unlike distant ones they leave no ambiguity: what they send falls off with the
- * squared distance, so that how pictures darken from one side to the other tells where the light is (T. Papadhimitri,
- * P. Favaro, Uncalibrated near-light photometric stereo, BMVC 2014, alternate light positions, normals and depth). Here
- * surface and lights are refined together, which converges where alternation creeps (bundle.h).
+/* Estimates near lights of unknown position. Unlike distant ones they leave no ambiguity: their light falls off with
+ * the squared distance, so that the gradient of brightness across a picture determines the light's position (T.
+ * Papadhimitri, P. Favaro, Uncalibrated near-light photometric stereo, BMVC 2014, alternate light positions, normals
+ * and depth). Here surface and lights are refined together, which converges where alternation is very slow (bundle.h).
  *
- * Stated priors: all lights have one power and are about equally far away, and the scale is the camera's mean distance.
- * Convex, flat or concave: several surfaces inflated from the object's outline are started from, on a coarse grid, each
- * with the lights that make it look most like the pictures; the one that explains the pictures best, once lights that
- * went astray are back, is refined on a finer grid. A bowl must do so clearly better than what bulges. */
+ * Priors: all lights have one power and about equal distances, and the scale is the camera's mean distance. The search
+ * starts from several surfaces inflated from the object's outline, convex, flat or concave, on a coarse grid, each with
+ * the lights that give the most similar pictures; the one that explains the pictures best, after misplaced lights have
+ * been corrected, is refined on a finer grid. A bowl must do so clearly better than a convex surface. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "stereo/uncalibrated/bundle.h"
 #include "stereo/uncalibrated/uncalibrated_parts.h"
 
-/* Cells along the object; directions that are tried for a light, and how often. */
+/* Number of cells along the object; number of directions tried for a light, and of repetitions. */
 enum { COARSE = 12, FINE = 22, DIRECTIONS = 240, SCANS = 4, RECALLS = 2 };
-/* Highlights count as this in ordinary values, at most, while lights are looked for. */
+/* Limit of highlights in ordinary values while lights are searched. */
 static const float bright = 1.5f;
-/* A light moves elsewhere for this share of what it costs. */
+/* Share of its cost to which a light's move must reduce it. */
 static const double better = 0.95;
 
 typedef struct start {
-    float relief, distance; /* of an inflated outline's height; of lights, in radii of the object */
-    float handicap;         /* factor on what it costs */
+    float relief, distance; /* factor of an inflated outline's height; distance of lights in radii of the object */
+    float handicap;         /* factor of its cost */
 } start;
 
 static const start starts[] = {{1, 2.5f, 1}, {0.3f, 2.5f, 1}, {1, 5, 1}, {0, 3, 1}, {-0.5f, 2.5f, 1.05f}};
 enum { STARTS = sizeof starts / sizeof *starts };
-/* Recalled lights lower the cost by up to a twentieth: a start that is further behind the best stays there. */
+/* Limit of a start's cost relative to the best: corrected lights lower the cost by up to a twentieth, so that a start
+ * further behind stays there. */
 static const double within_reach = 1.1;
 
-/* Widths of the loss, and steps at each. */
+/* Width of the loss, and number of steps at it. */
 typedef struct pass {
     float width;
     int steps;
@@ -40,7 +41,7 @@ typedef struct pass {
 static const pass coarse_pass[] = {{0.4f, 30}, {0.2f, 30}, {0.1f, 30}}, last_pass = {0.1f, 30};
 static const pass fine_pass[] = {{0.15f, 20}, {0.08f, 30}};
 
-/* On a spiral over the camera's side of the object and a little beyond. */
+/* Returns a position on a spiral over the camera's side of the object and slightly beyond. */
 static vec3 place(const bundle *b, int i, float distance)
 {
     float z = 1 - 1.15f * ((float)i + 0.5f) / DIRECTIONS, across = sqrtf(fmaxf(1 - z * z, 0));
@@ -48,7 +49,8 @@ static vec3 place(const bundle *b, int i, float distance)
     return vec3_fma(b->centre, distance * b->radius, vec3_make(across * cosf(turn), across * sinf(turn), z));
 }
 
-/* Of a picture with what a light would make of the surface, whatever its power; 1: the same. seen: a cell. */
+/* Returns the similarity of a picture to a light's shading of the surface, whatever its power; 1: equal. seen: one
+ * value per cell. */
 static float likeness(const bundle *b, int light, const float *seen)
 {
     float product = 0, square = 1e-20f, own = 1e-20f;
@@ -77,8 +79,7 @@ static void scan_lights(bundle *b, float distance, const float *seen)
     }
 }
 
-/* The lights under which the surface looks most like the pictures; its albedo is first taken for what it were under
- * lights from everywhere. */
+/* Finds the lights that give the most similar pictures; the surface's first albedo is that under uniform light. */
 static status find_lights(bundle *b, float distance)
 {
     float *seen = malloc((size_t)b->cells * DIRECTIONS * sizeof *seen);
@@ -100,7 +101,7 @@ static status find_lights(bundle *b, float distance)
     return OK;
 }
 
-/* A light that went astray while surface and albedo were wrong finds its place now that they are better. */
+/* Searches again for lights that were misplaced while surface and albedo were wrong. */
 static void recall_lights(bundle *b, float width)
 {
     float distance = 0;
@@ -126,7 +127,7 @@ static status refine(bundle *b, const pass *passes, int count)
     return s;
 }
 
-/* least: of the starts before. */
+/* Solves from a start. least: cost of the previous starts. */
 static status solve_from(const start *from, double least, bundle *b)
 {
     status s = bundle_inflate(b, from->relief);

@@ -199,14 +199,14 @@ static void a_noisy_ball_is_not_turned(void **state)
         some[k] = (merlin_light){.intensity = {1, 1, 1}};
     pst_problem p = {.capture = &c, .light = some, .saturation = PST_SATURATED};
     assert_int_equal(pst_list_pixels(&c, &p), OK);
-    img balloon, height;
+    img inflated, height;
     pst_rotation rotation;
-    assert_int_equal(pst_inflate(&c.mask, &balloon, &height), OK);
-    assert_int_equal(pst_find_distant_lights(&p, &balloon, found, &rotation), OK);
+    assert_int_equal(pst_inflate(&c.mask, &inflated, &height), OK);
+    assert_int_equal(pst_find_distant_lights(&p, &inflated, found, &rotation), OK);
     for (int k = 0; k < 12; k++)
         assert_true(normal_angle(vec3_of(c.light[k].direction), vec3_of(found[k].direction)) < 2); /* 0.3 on average */
     assert_false(rotation.unsure);
-    img_free(&balloon);
+    img_free(&inflated);
     img_free(&height);
     free(p.pixel);
     capture_drop(&c);
