@@ -25,6 +25,7 @@
  *     model.h        weights to work with
  *     maps.h         what an object is made of
  *     estimate.h     from a photograph to maps
+ *     lights.h       lamps, surroundings, found light
  *     relight.h      from maps to new light
  *     stereo.h       from pictures under many lights to a surface
  *     calibrate.h    where lights were
@@ -51,6 +52,7 @@
 #include <merlin/export.h>
 #include <merlin/files.h>
 #include <merlin/image.h>
+#include <merlin/lights.h>
 #include <merlin/maps.h>
 #include <merlin/mesh.h>
 #include <merlin/model.h>

@@ -11,6 +11,7 @@
 #ifndef MERLIN_RELIGHT_H
 #define MERLIN_RELIGHT_H
 
+#include <merlin/lights.h>
 #include <merlin/maps.h>
 
 #ifdef __cplusplus
@@ -29,15 +30,6 @@ typedef enum merlin_relighting {
  * size and exposure (the usual one if its values go beyond 1), 3 channels in [0, 1]. */
 merlin_status merlin_relight(merlin_model *model, const merlin_maps *maps, const float light[3], merlin_relighting how,
                              merlin_image *out);
-
-/* Surroundings: a latitude-longitude picture, twice as wide as high (Radiance HDR or EXR; up is its top row, straight
- * ahead of the camera its middle column, right of that the camera's right). */
-typedef struct merlin_environment merlin_environment;
-
-/* Such files are in no known unit: mean luminance becomes 2^exposure, at 0 a white object about as bright as
- * under the flash. turn: degrees about the vertical; at 90 what was straight ahead is to the camera's right. */
-merlin_status merlin_environment_read(const char *path, float turn, float exposure, merlin_environment **out);
-void merlin_environment_free(merlin_environment *environment);
 
 /* The object in these surroundings, and under a point light too unless that is NULL: diffuse by nine spherical
  * harmonics, highlights from the picture itself. MERLIN_BY_BRDF: with the shadows that the object casts on itself and a
@@ -63,7 +55,36 @@ merlin_status merlin_relighter_new(merlin_model *model, const merlin_maps *maps,
  * beside the object. One thread at a time for a relighter. */
 merlin_status merlin_relighter_render(merlin_relighter *relighter, const float *light,
                                       const merlin_environment *environment, merlin_image *out);
+/* Renders the same under so many lamps together, and in surroundings (or NULL): one of all at least. */
+merlin_status merlin_relighter_render_lamps(merlin_relighter *relighter, const merlin_lamp *lamps, int count,
+                                            const merlin_environment *environment, merlin_image *out);
 void merlin_relighter_free(merlin_relighter *relighter);
+
+/* Returns MERLIN_WRONG_USE where a way of relighting does not exist, or knows no such lamp (NULL: none), alone or in
+ * surroundings: asked before long work. */
+merlin_status merlin_relighting_check(merlin_relighting how, const merlin_lamp *lamp, int surroundings);
+
+/* ---- a relighter's pictures ---- */
+
+/* Takes the gloss away from all that follow, but for what MERLIN_BY_NETWORK paints. */
+merlin_status merlin_relighter_make_matte(merlin_relighter *relighter);
+/* Gives those that follow another side, of the maps it was made of. After a failure it is good for nothing but
+ * merlin_relighter_free. */
+merlin_status merlin_relighter_resize(merlin_relighter *relighter, const merlin_maps *maps, int side);
+/* Returns the object in them: 1 channel, coverage in [0, 1], as long as the relighter has this side. */
+const merlin_image *merlin_relighter_mask(const merlin_relighter *relighter);
+/* Puts a picture into the photograph's frame, black beside the object. MERLIN_WRONG_USE unless the square has as many
+ * pixels as in the photograph. */
+merlin_status merlin_relighter_place(const merlin_relighter *relighter, const merlin_image *square, merlin_image *out);
+
+/* Return and set the radiance that is white in them, at first as the photograph was exposed. */
+float merlin_relighter_white(const merlin_relighter *relighter);
+merlin_status merlin_relighter_set_white(merlin_relighter *relighter, float white);
+/* Measures the white that leaves all but a thousandth of the object's values below it under each of these lamps, and a
+ * white matte surface that faces one of them at the object's centre; without lamps, in these surroundings (or NULL).
+ * Shadows and bounces are not looked at, so that it takes a fraction of the time of a picture. */
+merlin_status merlin_relighter_meter(merlin_relighter *relighter, const merlin_lamp *lamps, size_t count,
+                                     const merlin_environment *environment, float *white);
 
 #ifdef __cplusplus
 }

@@ -89,6 +89,12 @@ Object = _struct("object", [("mask", Image), ("source", c_int), ("confidence", c
 PNG, JPEG = range(2)
 Tile = _struct("tile", [("label", c_char_p), ("picture", POINTER(Image))])
 
+# ---- lights.h ----
+
+Lamp = _struct("lamp", [("at", floats3), ("distant", c_int), ("power", floats3)])
+Lamps = _struct("lamps", [("at", POINTER(Lamp)), ("count", c_size_t), ("warnings", Warnings)])
+FoundLights = _struct("found_lights", [("lamps", Lamp * 2), ("count", c_int), ("rest", c_void_p)])
+
 # ---- relight.h ----
 
 BY_BRDF, BY_NETWORK, BY_BRDF_UNSHADOWED, BY_BRDF_DIRECT = range(4)
@@ -214,6 +220,30 @@ FUNCTIONS: Dict[str, Tuple[Any, List[Any]]] = {
     "relighter_new": (c_int, [_handle, _at(Maps), c_int, c_int, _out]),
     "relighter_render": (c_int, [_handle, _light3, _handle, _at(Image)]),
     "relighter_free": (None, [_handle]),
+    "lamp_at": (Lamp, [c_float, c_float, c_float]),
+    "lamp_toward": (Lamp, [c_float, c_float, c_float]),
+    "dome_lamp": (Lamp, [c_int, c_int, c_float]),
+    "dome_direction": (None, [c_int, c_int, _light3]),
+    "orbit_lamp": (Lamp, [c_int, c_int]),
+    "temperature_color": (c_int, [c_double, _light3]),
+    "lamps_read": (c_int, [c_char_p, c_float, _at(Lamps)]),
+    "lamps_free": (None, [_at(Lamps)]),
+    "environment_turn": (None, [_handle, c_float]),
+    "environment_negative": (c_double, [_handle]),
+    "found_lights_new": (c_int, [_at(FoundLight), c_float, _at(FoundLights)]),
+    "found_lights_turn": (None, [_at(FoundLights), c_float]),
+    "found_lights_free": (None, [_at(FoundLights)]),
+    "maps_field_of_view": (c_double, [_at(Maps)]),
+    "maps_lens_place": (None, [_at(Maps), _light3, _light3]),
+    "relighter_render_lamps": (c_int, [_handle, _at(Lamp), c_int, _handle, _at(Image)]),
+    "relighting_check": (c_int, [c_int, _at(Lamp), c_int]),
+    "relighter_make_matte": (c_int, [_handle]),
+    "relighter_resize": (c_int, [_handle, _at(Maps), c_int]),
+    "relighter_mask": (_at(Image), [_handle]),
+    "relighter_place": (c_int, [_handle, _at(Image), _at(Image)]),
+    "relighter_white": (c_float, [_handle]),
+    "relighter_set_white": (c_int, [_handle, c_float]),
+    "relighter_meter": (c_int, [_handle, _at(Lamp), c_size_t, _handle, _light3]),
     "capture_read": (c_int, [c_char_p, _at(CaptureFiles), _out]),
     "capture_new": (c_int, [_at(CaptureParams), _at(Image), _out]),
     "capture_add": (c_int, [_handle, _at(Image), _at(Light)]),

@@ -131,7 +131,7 @@ def kind_of(text):
     for word in ("float", "double", "size_t"):
         if re.match(r"(const )?" + word, text):
             return word
-    return "structure" if re.match(r"merlin_params\b", text) else "int"
+    return "structure" if re.match(r"merlin_(params|lamp)\b", text) else "int"
 
 
 def kind_of_ctype(ctype):

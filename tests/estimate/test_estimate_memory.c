@@ -22,7 +22,7 @@ enum { SIDE = 32, PIXELS = SIDE * SIDE, SIZE = 64 };
 
 /* All that the calls below take and give. */
 typedef struct work {
-    char any[256], point[256], room[256], folder[256], written[256];
+    char any[256], point[256], room[256], list[256], folder[256], written[256];
     merlin_model *model;
     merlin_image photo, mask;
     bool with_mask;
@@ -247,6 +247,45 @@ static int relight_many(void *context)
     return s;
 }
 
+/* The found light by its parts, metered, matte, and in the photograph's frame. */
+static int relight_parts(void *context)
+{
+    work *w = context;
+    merlin_relighter *relighter = NULL;
+    merlin_found_lights found = {.count = 0};
+    merlin_image square = {0};
+    float white = 1;
+    memset(&w->picture, 0, sizeof w->picture);
+    int s = merlin_relighter_new(w->model, &w->maps, 0, MERLIN_BY_BRDF, &relighter);
+    if (s == MERLIN_OK) s = merlin_relighter_make_matte(relighter);
+    if (s == MERLIN_OK) s = merlin_found_lights_new(&w->maps.light, 30, &found);
+    if (s == MERLIN_OK) s = merlin_relighter_meter(relighter, found.lamps, (size_t)found.count, found.rest, &white);
+    if (s == MERLIN_OK) s = merlin_relighter_set_white(relighter, white);
+    if (s == MERLIN_OK) s = merlin_relighter_render_lamps(relighter, found.lamps, found.count, found.rest, &square);
+    if (s == MERLIN_OK) s = merlin_relighter_place(relighter, &square, &w->picture);
+    merlin_image_free(&square);
+    merlin_found_lights_free(&found);
+    merlin_relighter_free(relighter);
+    return s;
+}
+
+static int read_lamps(void *context)
+{
+    const work *w = context;
+    merlin_lamps lamps;
+    int s = merlin_lamps_read(w->list, 0, &lamps);
+    if (s != MERLIN_OK) assert_null(lamps.at);
+    merlin_lamps_free(&lamps);
+    return s;
+}
+
+static const char *check_nothing(void *context, int result)
+{
+    (void)context;
+    (void)result;
+    return NULL;
+}
+
 static int make_mesh(void *context)
 {
     work *w = context;
@@ -343,6 +382,20 @@ static void lack_of_memory_makes_no_mesh(void **state)
     each_allocation_fails(&(memory_trial){"mesh", make_mesh, check_mesh, w});
 }
 
+static void lack_of_memory_reads_no_lamps(void **state)
+{
+    work *w = *state;
+    static const char lp[] = "2\na.png 0 0.6 0.8\nb.png 1 0 0\n";
+    snprintf(w->list, sizeof w->list, "%s", scratch_path("dome.lp"));
+    assert_int_equal(file_write(w->list, lp, sizeof lp - 1), OK);
+    each_allocation_fails(&(memory_trial){"lamps_read", read_lamps, check_nothing, w});
+}
+
+static void lack_of_memory_relights_no_parts(void **state)
+{
+    each_allocation_fails(&(memory_trial){"relight by parts", relight_parts, check_picture, *state});
+}
+
 static void draw(work *w)
 {
     w->photo = (merlin_image){SIDE, SIDE, 3, calloc(3 * PIXELS, sizeof(float))};
@@ -407,6 +460,8 @@ int main(void)
         cmocka_unit_test_setup_teardown(lack_of_memory_reads_no_maps, set_up, tear_down),
         cmocka_unit_test_setup_teardown(lack_of_memory_makes_no_mesh, set_up, tear_down),
         cmocka_unit_test_setup_teardown(lack_of_memory_relights_nothing, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(lack_of_memory_relights_no_parts, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(lack_of_memory_reads_no_lamps, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

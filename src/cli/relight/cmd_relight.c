@@ -23,7 +23,6 @@
 #include "command/photo_hint.h"
 #include "command/photos.h"
 #include "command/standard_input.h"
-#include "estimate/relight/relighter.h"
 
 static const char help[] =
     "usage: merlin relight PHOTO|DIR --light x,y,z [--light ...] [options]\n"
@@ -112,7 +111,7 @@ typedef struct request {
     merlin_params params;
     merlin_relighting how;
     exposing exposing;
-    img_file_kind format;
+    merlin_image_format format;
     int orbit, frame;
     relight_dome dome;
     bool found, near, no_shadows, no_bounces, matte, json, quiet, help;
@@ -131,11 +130,11 @@ static status take_exposing(const char *text, void *into)
 
 static status take_format(const char *text, void *into)
 {
-    img_file_kind *format = into;
+    merlin_image_format *format = into;
     if (strcmp(text, "png") == 0)
-        *format = IMG_PNG;
+        *format = MERLIN_PNG;
     else if (strcmp(text, "jpg") == 0 || strcmp(text, "jpeg") == 0)
-        *format = IMG_JPEG;
+        *format = MERLIN_JPEG;
     else
         return fail(MERLIN_WRONG_USE, "--format wants png or jpg, not \"%s\"", text);
     return OK;
@@ -298,8 +297,8 @@ static status check_lamps(const request *r)
     if (r->env && r->orbit && r->lamps.count > 1)
         return fail(MERLIN_WRONG_USE, "an --orbit of the --env goes round beside one --light, not %zu", r->lamps.count);
     for (size_t i = 0; i < r->lamps.count && s == OK; i++)
-        s = relighter_check(r->how, &r->lamps.at[i], r->env);
-    if (s == OK && r->env && r->lamps.count == 0) s = relighter_check(r->how, NULL, true);
+        s = merlin_relighting_check(r->how, &r->lamps.at[i], r->env != NULL);
+    if (s == OK && r->env && r->lamps.count == 0) s = merlin_relighting_check(r->how, NULL, 1);
     return s == OK ? check_standard_output(r) : s;
 }
 
@@ -322,9 +321,10 @@ static status get_maps(request *r, merlin_model *model, const watch *shown, merl
 
 static void doubt_environment(const merlin_environment *e, warnings *doubts)
 {
-    if (e && e->negative > 0)
+    const double negative = merlin_environment_negative(e);
+    if (negative > 0)
         warnings_add(doubts, "environment_values",
-                     "%.3g %% of the surroundings' values are negative, and were taken for black", 100 * e->negative);
+                     "%.3g %% of the surroundings' values are negative, and were taken for black", 100 * negative);
 }
 
 static void doubt_darkness(const relight_result *result, warnings *doubts)

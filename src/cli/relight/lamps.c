@@ -8,8 +8,6 @@
 
 #include "base/lights/light_list.h"
 #include "command/cli.h"
-#include "image/color.h"
-#include "optics/blackbody.h"
 
 lamp_options lamp_options_new(void)
 {
@@ -23,24 +21,24 @@ void lamp_options_free(lamp_options *lamps)
     *lamps = (lamp_options){0};
 }
 
-vec3 lamp_tint(const lamp_style *style)
+merlin_lamp lamp_in_style(merlin_lamp lamp, const lamp_style *style)
 {
-    return vec3_scale(style->color, style->power);
+    vec3_put(vec3_scale(style->color, style->power), lamp.power);
+    return lamp;
 }
 
-static status add(lamp_options *lamps, lamp l)
+static status add(lamp_options *lamps, merlin_lamp l)
 {
     if (lamps->count >= LIGHT_LIST_MAX) return fail(MERLIN_BAD_INPUT, "more than %d lights", LIGHT_LIST_MAX);
     size_t more = lamps->count + 1;
-    lamp *at = realloc(lamps->at, more * sizeof *at);
+    merlin_lamp *at = realloc(lamps->at, more * sizeof *at);
     if (at) lamps->at = at;
     lamp_style *style = at ? realloc(lamps->style, more * sizeof *style) : NULL;
     if (!style) return fail(MERLIN_NO_MEMORY, "no memory for %zu lights", more);
     lamps->style = style;
-    l.tint = lamp_tint(&lamps->common);
     style[lamps->count] = lamps->common;
     style[lamps->count].has_power = style[lamps->count].has_color = false;
-    lamps->at[lamps->count++] = l;
+    lamps->at[lamps->count++] = lamp_in_style(l, &lamps->common);
     return OK;
 }
 
@@ -48,7 +46,7 @@ status lamp_take_light(const char *text, void *into)
 {
     float v[3];
     status s = cli_vec3("--light", text, v);
-    return s == OK ? add(into, lamp_at(vec3_of(v))) : s;
+    return s == OK ? add(into, merlin_lamp_at(v[0], v[1], v[2])) : s;
 }
 
 static status check_direction(const char *option, vec3 direction)
@@ -63,7 +61,7 @@ status lamp_take_direction(const char *text, void *into)
     float v[3];
     status s = cli_vec3("--direction", text, v);
     if (s == OK) s = check_direction("--direction", vec3_of(v));
-    return s == OK ? add(into, lamp_toward(vec3_of(v))) : s;
+    return s == OK ? add(into, merlin_lamp_toward(v[0], v[1], v[2])) : s;
 }
 
 /* The style that an option behind the lamps so far changes. */
@@ -74,7 +72,8 @@ static lamp_style *style_here(lamp_options *lamps)
 
 static void restyle(lamp_options *lamps)
 {
-    if (lamps->count) lamps->at[lamps->count - 1].tint = lamp_tint(&lamps->style[lamps->count - 1]);
+    const size_t last = lamps->count - 1;
+    if (lamps->count) lamps->at[last] = lamp_in_style(lamps->at[last], &lamps->style[last]);
 }
 
 /* Notes that an option was given, which it may be once for a lamp, and once for all that have none of their own. */
@@ -99,14 +98,18 @@ status lamp_take_power(const char *text, void *into)
 
 static bool take_hex(const char *text, vec3 *color)
 {
+    static const merlin_pixel_layout one = {.width = 1, .height = 1, .channels = 3, .type = MERLIN_PIXEL_FLOAT};
     if (*text++ != '#' || strlen(text) != 6) return false;
-    float channel[3];
+    float encoded[3];
     for (int c = 0; c < 3; c++) {
         char digits[3] = {text[2 * c], text[2 * c + 1], 0};
         if (!isxdigit((unsigned char)digits[0]) || !isxdigit((unsigned char)digits[1])) return false;
-        channel[c] = srgb_decode((float)strtol(digits, NULL, 16) / 255);
+        encoded[c] = (float)strtol(digits, NULL, 16) / 255;
     }
-    *color = vec3_of(channel);
+    merlin_image pixel;
+    if (merlin_image_from_pixels(encoded, &one, &pixel, NULL) != MERLIN_OK) return false;
+    *color = vec3_of(pixel.data);
+    merlin_image_free(&pixel);
     return true;
 }
 
@@ -114,8 +117,10 @@ static bool take_kelvin(const char *text, vec3 *color)
 {
     char *end;
     double kelvin = strtod(text, &end);
-    if (end == text || (*end != 'K' && *end != 'k') || end[1] || !(kelvin >= 1000 && kelvin <= 40000)) return false;
-    *color = blackbody_color(kelvin);
+    if (end == text || (*end != 'K' && *end != 'k') || end[1]) return false;
+    float channel[3];
+    if (merlin_temperature_color(kelvin, channel) != MERLIN_OK) return false;
+    *color = vec3_of(channel);
     return true;
 }
 
@@ -143,43 +148,25 @@ status lamp_take_color(const char *text, void *into)
     return OK;
 }
 
-/* The directions of other programs' lists would be places behind the camera. */
-static void note_list(const char *path, const light_list *list, lamp_options *lamps)
+/* Adds a listed lamp, as strong as it is listed times the common style. */
+static status add_listed(const merlin_lamp *lamp, lamp_options *lamps)
 {
-    bool behind = list->count > 1 && !list->about_object && !list->angles && light_list_is_unit(list);
-    for (size_t i = 0; i < list->count && behind; i++)
-        behind = list->at[i].z > 0;
-    if (behind)
-        warnings_add(&lamps->noticed, "lights_behind_camera",
-                     "the lights in %s are all of length 1 and behind the camera (z above 0), as directions are, and "
-                     "were taken for places: an .lp file lists directions",
-                     path);
-    if (list->note[0]) warnings_add(&lamps->noticed, "lights_list", "%s: %s", path, list->note);
-}
-
-static status add_listed(const light_list *list, size_t i, float near, lamp_options *lamps)
-{
-    const vec3 object = {0, 0, -1};
-    vec3 direction = light_list_direction(list, i);
-    lamp l = lamp_at(list->at[i]);
-    if (list->about_object || list->angles)
-        l = near > 0 ? lamp_at(vec3_fma(object, near, direction)) : lamp_toward(direction);
-    status s = add(lamps, l);
-    if (s != OK || !list->intensity) return s;
+    status s = add(lamps, *lamp);
+    if (s != OK) return s;
     lamp_style *style = &lamps->style[lamps->count - 1];
-    style->color = vec3_mul(style->color, list->intensity[i]);
+    style->color = vec3_mul(style->color, vec3_of(lamp->power));
     restyle(lamps);
     return OK;
 }
 
 status lamp_read_list(const char *path, float near, lamp_options *lamps)
 {
-    light_list list;
-    status s = light_list_read(path, &list);
+    merlin_lamps list;
+    status s = merlin_lamps_read(path, near, &list);
     if (s != OK) return s;
-    note_list(path, &list, lamps);
+    lamps->noticed = list.warnings;
     for (size_t i = 0; i < list.count && s == OK; i++)
-        s = add_listed(&list, i, near, lamps);
-    light_list_free(&list);
+        s = add_listed(&list.at[i], lamps);
+    merlin_lamps_free(&list);
     return s;
 }

@@ -9,11 +9,13 @@
 #ifndef MERLIN_CLI_RELIGHT_LAMPS_H
 #define MERLIN_CLI_RELIGHT_LAMPS_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "base/status.h"
+#include "base/vec.h"
 #include "base/warnings.h"
-#include "optics/light.h"
+#include "merlin/lights.h"
 
 typedef struct lamp_style {
     float power;               /* times that of the training data's lamp */
@@ -22,7 +24,7 @@ typedef struct lamp_style {
 } lamp_style;
 
 typedef struct lamp_options {
-    lamp *at;
+    merlin_lamp *at;
     lamp_style *style; /* of each */
     size_t count;
     warnings noticed;  /* of the list that was read */
@@ -42,7 +44,7 @@ status lamp_take_color(const char *text, void *into);
 /* Adds the lights of a file, as strong as it says: places, x y z a line; or directions, of an .lp file or as angles,
  * whose lights are distant or, where near is not 0, so far from (0, 0, -1), where the object is. */
 status lamp_read_list(const char *path, float near, lamp_options *lamps);
-/* The tint of a style. */
-vec3 lamp_tint(const lamp_style *style);
+/* Gives a lamp the power and colour of a style. */
+merlin_lamp lamp_in_style(merlin_lamp lamp, const lamp_style *style);
 
 #endif

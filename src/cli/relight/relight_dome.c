@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 /* A dome: pictures under lights spread evenly over the frontal hemisphere, for RTI tools and for merlin stereo. */
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,21 +9,9 @@
 #include "cli/check_replaced.h"
 #include "cli/relight/relight_parts.h"
 
-/* A Fibonacci spiral: equal steps of cosθ, the golden angle in φ. */
-static vec3 dome_direction(int i, int count)
+merlin_lamp relight_dome_lamp(const relight_job *job, int i)
 {
-    real cosine = 1 - ((real)i + (real)0.5) / (real)count, sine = sqrt(1 - cosine * cosine);
-    real phi = (real)2.39996322972865332 * (real)i;
-    return vec3_make(sine * cos(phi), sine * sin(phi), cosine);
-}
-
-lamp relight_dome_lamp(const relight_job *job, int i)
-{
-    const relight_dome *d = &job->dome;
-    vec3 direction = dome_direction(i, d->count);
-    lamp l = d->near > 0 ? lamp_at(vec3_fma(vec3_make(0, 0, -1), d->near, direction)) : lamp_toward(direction);
-    l.tint = lamp_tint(&job->lamps.common);
-    return l;
+    return lamp_in_style(merlin_dome_lamp(i, job->dome.count, job->dome.near), &job->lamps.common);
 }
 
 /* ---- lists ---- */
@@ -35,35 +22,22 @@ static void print_lp(FILE *f, const void *context)
     const relight_job *job = context;
     fprintf(f, "%d\n", job->dome.count);
     for (int i = 0; i < job->dome.count; i++) {
-        vec3 l = dome_direction(i, job->dome.count);
-        fprintf(f, "dome_%03d%s %.6f %.6f %.6f\n", i, relight_ending(job), (double)l.x, (double)l.y, (double)l.z);
+        float d[3];
+        merlin_dome_direction(i, job->dome.count, d);
+        fprintf(f, "dome_%03d%s %.6f %.6f %.6f\n", i, relight_ending(job), (double)d[0], (double)d[1], (double)d[2]);
     }
-}
-
-/* Returns how wide the whole photograph is; where that is not known, if the crop counts as 60 degrees. */
-static double field_of_view(const merlin_maps *maps)
-{
-    const double right = (double)maps->slant[0], up = (double)maps->slant[1];
-    double wide = maps->fov > 0 ? (double)maps->fov : (double)CAMERA_FOV, forward = sqrt(1 - right * right - up * up);
-    double half = tan(wide / 2 * M_PI / 180) / forward * maps->mask.width / maps->crop.side;
-    return 2 * atan(half) * 180 / M_PI;
-}
-
-/* From the space of the maps, whose camera looks at the object, to that of the lens. */
-static vec3 in_lens_space(const merlin_maps *maps, vec3 v)
-{
-    const camera_plane plane = camera_plane_of((camera_slant){maps->slant[0], maps->slant[1]});
-    return vec3_make(vec3_dot(v, plane.right), vec3_dot(v, plane.up), vec3_dot(v, vec3_cross(plane.right, plane.up)));
 }
 
 static void print_places(FILE *f, const void *context)
 {
     const relight_job *job = context;
     fprintf(f, LIST_OF_PLACES "%s and on, x y z from the camera: for merlin stereo --near --fov %.2f\n",
-            relight_ending(job), field_of_view(job->maps));
+            relight_ending(job), merlin_maps_field_of_view(job->maps));
     for (int i = 0; i < job->dome.count; i++) {
-        vec3 l = in_lens_space(job->maps, relight_dome_lamp(job, i).at);
-        fprintf(f, "%.6f %.6f %.6f\n", (double)l.x, (double)l.y, (double)l.z);
+        const merlin_lamp l = relight_dome_lamp(job, i);
+        float place[3];
+        merlin_maps_lens_place(job->maps, l.at, place);
+        fprintf(f, "%.6f %.6f %.6f\n", (double)place[0], (double)place[1], (double)place[2]);
     }
 }
 
@@ -134,15 +108,14 @@ static status write_lists(const relight_work *w)
 static status write_mask(const relight_work *w)
 {
     char path[PATH_MAX];
-    img mask = w->job->maps->mask;
-    return img_write_webp(staging_path(w->staging, "mask.webp", path), &mask);
+    return merlin_mask_write(&w->job->maps->mask, staging_path(w->staging, "mask.webp", path));
 }
 
 status relight_write_dome(relight_work *w)
 {
     status s = OK;
     for (int i = 0; i < w->job->dome.count && s == OK; i++) {
-        lamp light = relight_dome_lamp(w->job, i);
+        const merlin_lamp light = relight_dome_lamp(w->job, i);
         s = relight_check(w);
         if (s == OK) s = relight_write(w, &(relight_picture){"dome", (size_t)i, &light, 1, NULL, false});
     }

@@ -9,7 +9,6 @@
 #include "base/status.h"
 #include "base/watch.h"
 #include "cli/relight/lamps.h"
-#include "image/write/write.h"
 #include "merlin/merlin.h"
 
 enum { RELIGHT_MOST_FRAMES = 240, RELIGHT_MOST_DOME = 999 };
@@ -29,16 +28,16 @@ typedef struct relight_dome {
 
 typedef struct relight_job {
     merlin_model *model;
-    merlin_maps *maps;                     /* but for the mask they are let go when nothing needs them any more */
-    const char *output;                    /* folder */
-    const char *const *inputs;             /* as in staging_begin */
-    lamp_options lamps;                    /* relit_000 …, of the photograph's size */
-    const merlin_environment *environment; /* beside the lights, and alone where there are none; or NULL */
-    bool found; /* instead of lamps and environment the light that was found in the photograph */
-    float turn; /* degrees that it is turned about the vertical, as of merlin_relight_found */
+    merlin_maps *maps;               /* but for the mask they are let go when nothing needs them any more */
+    const char *output;              /* folder */
+    const char *const *inputs;       /* as in staging_begin */
+    lamp_options lamps;              /* relit_000 …, of the photograph's size */
+    merlin_environment *environment; /* an orbit turns it; beside the lights, and alone where there are none; or NULL */
+    bool found;                      /* instead of lamps and environment the light that was found in the photograph */
+    float turn;                      /* degrees that it is turned about the vertical, as of merlin_relight_found */
     merlin_relighting how;
     bool matte;
-    img_file_kind format; /* of the photograph's size */
+    merlin_image_format format; /* of the photograph's size */
     relight_exposing exposing;
     float ev; /* stops brighter than that */
     relight_dome dome;

@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "cli/relight/relight_parts.h"
-#include "estimate/photo/model_pair.h"
 
 enum { USUAL_FRAME = 512 };
 
@@ -41,7 +40,7 @@ static size_t count_lamps(const relight_job *job)
 }
 
 /* All lamps of all pictures: one exposure for them, so that they can be compared. */
-static void gather(const relight_job *job, lamp *all)
+static void gather(const relight_job *job, merlin_lamp *all)
 {
     size_t count = 0;
     for (size_t i = 0; i < job->lamps.count; i++)
@@ -51,21 +50,23 @@ static void gather(const relight_job *job, lamp *all)
     for (int i = 0; !relight_surroundings_turn(job) && i < job->orbit; i++)
         all[count++] = relight_orbit_lamp(job, i);
     for (size_t i = 0; job->exposing == RELIGHT_BY_LAMPS && i < count; i++)
-        all[i].tint = vec3_make(1, 1, 1);
+        all[i].power[0] = all[i].power[1] = all[i].power[2] = 1;
 }
 
 static status expose(relight_work *w)
 {
     const relight_job *job = w->job;
-    float white = w->relighter.white, as_source = white;
+    const float as_source = merlin_relighter_white(w->relighter);
+    float white = as_source;
     size_t count = count_lamps(job);
     bool metered = job->exposing == RELIGHT_AUTO || (job->exposing == RELIGHT_BY_LAMPS && count > 0);
-    lamp *all = malloc((count + 1) * sizeof *all);
+    merlin_lamp *all = malloc((count + 1) * sizeof *all);
     if (!all) return fail(MERLIN_NO_MEMORY, "no memory for %zu lamps", count);
     gather(job, all);
-    status s = metered ? relighter_meter(&w->relighter, all, count, &white) : OK;
-    w->relighter.white = white / exp2f(job->ev);
-    w->result->ev = log2f(as_source / w->relighter.white);
+    status s = metered ? merlin_relighter_meter(w->relighter, all, count, job->environment, &white) : OK;
+    white /= exp2f(job->ev);
+    if (s == OK) s = merlin_relighter_set_white(w->relighter, white);
+    w->result->ev = log2f(as_source / white);
     free(all);
     return s;
 }
@@ -90,11 +91,9 @@ static status prepare_relighter(relight_work *w, int side)
 {
     const relight_job *job = w->job;
     watch_tell(job->watch, "preparing", 0);
-    status s = relighter_new(model_network(job->model, job->maps, job->how), job->maps, side, job->how, &w->relighter);
-    if (s == OK && job->matte) s = relighter_make_matte(&w->relighter);
-    if (s == OK && job->environment) s = relighter_surround(&w->relighter, &job->environment->map);
-    if (s == OK && job->found) s = found_light_stand(&job->maps->light, job->turn, &w->found);
-    if (s == OK && job->found) s = relighter_surround(&w->relighter, found_lights_rest(&w->found));
+    status s = merlin_relighter_new(job->model, job->maps, side, job->how, &w->relighter);
+    if (s == OK && job->matte) s = merlin_relighter_make_matte(w->relighter);
+    if (s == OK && job->found) s = merlin_found_lights_new(&job->maps->light, job->turn, &w->found);
     return s == OK ? expose(w) : s;
 }
 
@@ -106,11 +105,11 @@ static status write_all(relight_work *w)
     if (s == OK && !both) let_go(job->maps);
     if (s == OK) s = write_lights(w);
     if (s == OK && job->dome.count) s = relight_write_dome(w);
-    if (s == OK && both) s = relighter_resize(&w->relighter, job->maps, frame_side(job));
+    if (s == OK && both) s = merlin_relighter_resize(w->relighter, job->maps, frame_side(job));
     if (both) let_go(job->maps);
     if (s == OK && job->orbit) s = relight_write_orbit(w, frame_side(job));
-    relighter_free(&w->relighter);
-    env_map_free(&w->found.rest);
+    merlin_relighter_free(w->relighter);
+    merlin_found_lights_free(&w->found);
     return s;
 }
 
@@ -141,22 +140,22 @@ status relight_print(const relight_job *job, relight_result *result)
 {
     relight_work w = {.job = job, .result = result};
     *result = (relight_result){0};
-    img square = {0}, whole = {0};
+    merlin_image square = {0}, whole = {0};
     uint8_t *data = NULL;
     size_t size = 0;
     status s = prepare_relighter(&w, 0);
     watch_tell(job->watch, "relighting", 0);
     int count;
-    const lamp *lights = relight_lamps(&w, 0, &count);
+    const merlin_lamp *lights = relight_lamps(&w, 0, &count);
     if (s == OK) s = relight_square(&w, lights, count, &square);
-    if (s == OK) s = relight_frame(&w, &square, &whole);
-    if (s == OK) s = img_encode_picture("standard output", &whole, job->format, &data, &size);
+    if (s == OK) s = merlin_relighter_place(w.relighter, &square, &whole);
+    if (s == OK) s = merlin_image_encode(&whole, job->format, &data, &size);
     if (s == OK) s = relight_check(&w);
     if (s == OK) s = print(data, size);
     free(data);
-    img_free(&square);
-    img_free(&whole);
-    relighter_free(&w.relighter);
-    env_map_free(&w.found.rest);
+    merlin_image_free(&square);
+    merlin_image_free(&whole);
+    merlin_relighter_free(w.relighter);
+    merlin_found_lights_free(&w.found);
     return s;
 }

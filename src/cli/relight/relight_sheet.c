@@ -4,15 +4,12 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "image/resize.h"
-#include "image/write/figure.h"
-
 enum { TILE_SIZE = 192, COLUMNS = 6 };
 
 void relight_sheet_free(relight_sheet *s)
 {
     for (int i = 0; i < s->count; i++)
-        img_free(&s->pictures[i]);
+        merlin_image_free(&s->pictures[i]);
 }
 
 /* In hundredths, and never as "-0.00". */
@@ -21,28 +18,28 @@ static double shown(float x)
     return round(100 * (double)x) / 100 + 0.0;
 }
 
-void relight_label(const lamp *lights, int count, char label[RELIGHT_LABEL])
+void relight_label(const merlin_lamp *lights, int count, char label[RELIGHT_LABEL])
 {
     if (count)
-        snprintf(label, RELIGHT_LABEL, "%s%.2f, %.2f, %.2f", lights->distant ? "toward " : "", shown(lights->at.x),
-                 shown(lights->at.y), shown(lights->at.z));
+        snprintf(label, RELIGHT_LABEL, "%s%.2f, %.2f, %.2f", lights->distant ? "toward " : "", shown(lights->at[0]),
+                 shown(lights->at[1]), shown(lights->at[2]));
     else
         snprintf(label, RELIGHT_LABEL, "environment");
 }
 
 status relight_sheet_write(const relight_sheet *s, const char *path)
 {
-    figure_tile tiles[RELIGHT_MOST_TILES];
+    merlin_tile tiles[RELIGHT_MOST_TILES];
     for (int i = 0; i < s->count; i++)
-        tiles[i] = (figure_tile){s->labels[i], &s->pictures[i]};
+        tiles[i] = (merlin_tile){s->labels[i], &s->pictures[i]};
     int columns = s->count < COLUMNS ? s->count : COLUMNS;
-    return figure_sheet(path, tiles, s->count, columns, TILE_SIZE);
+    return merlin_sheet_write(tiles, s->count, columns, TILE_SIZE, path);
 }
 
-status relight_sheet_add(relight_sheet *s, const img *picture, const char *label)
+status relight_sheet_add(relight_sheet *s, const merlin_image *picture, const char *label)
 {
     if (s->count == RELIGHT_MOST_TILES) return OK;
-    status result = img_resize(picture, TILE_SIZE, TILE_SIZE, &s->pictures[s->count]);
+    status result = merlin_image_resize(picture, TILE_SIZE, TILE_SIZE, &s->pictures[s->count]);
     if (result == OK) snprintf(s->labels[s->count++], RELIGHT_LABEL, "%s", label);
     return result;
 }

@@ -4,9 +4,6 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "estimate/photo/model_pair.h"
-#include "estimate/relight/maps_surface.h"
-
 status relight_check(const relight_work *w)
 {
     return w->job->stop && w->job->stop() ? fail(MERLIN_STOPPED, "stopped") : OK;
@@ -27,9 +24,9 @@ static const float LEAST_SEEN = 0.5f / 255 / 12.92f;
 static const double LITTLE_LIT = 0.01;
 
 /* Counts what is white of the object, and what is not black. */
-static void note_light(relight_work *w, const img *square)
+static void note_light(relight_work *w, const merlin_image *square)
 {
-    const img *mask = &w->relighter.full.mask;
+    const merlin_image *mask = merlin_relighter_mask(w->relighter);
     size_t burnt = 0, lit = 0, count = 0;
     for (size_t i = 0; i < (size_t)mask->width * (size_t)mask->height; i++) {
         const float *value = square->data + 3 * i;
@@ -50,54 +47,46 @@ bool relight_surroundings_turn(const relight_job *job)
     return job->environment || job->found;
 }
 
-const lamp *relight_lamps(const relight_work *w, size_t i, int *count)
+const merlin_lamp *relight_lamps(const relight_work *w, size_t i, int *count)
 {
     const relight_job *job = w->job;
     *count = job->found ? w->found.count : job->lamps.count > 0;
     return job->found ? w->found.lamps : job->lamps.at + i;
 }
 
-status relight_square(relight_work *w, const lamp *lights, int count, img *out)
+status relight_square(relight_work *w, const merlin_lamp *lights, int count, merlin_image *out)
 {
-    network *n = model_network(w->job->model, w->job->maps, w->job->how);
-    status s = relighter_render(n, &w->relighter, lights, count, out);
+    const merlin_environment *around = w->job->found ? w->found.rest : w->job->environment;
+    status s = merlin_relighter_render_lamps(w->relighter, lights, count, around, out);
     if (s == OK) note_light(w, out);
     return s;
 }
 
 const char *relight_ending(const relight_job *job)
 {
-    return job->format == IMG_JPEG ? ".jpg" : ".png";
+    return job->format == MERLIN_JPEG ? ".jpg" : ".png";
 }
 
-status relight_frame(const relight_work *w, const img *square, img *out)
-{
-    const merlin_maps *maps = w->job->maps;
-    status s = img_new(out, maps->mask.width, maps->mask.height, 3);
-    if (s == OK) crop_put(square, crop_of(maps), &w->relighter.full.mask, out);
-    return s;
-}
-
-static status write_named(const relight_work *w, const char *name, const img *whole)
+static status write_named(const relight_work *w, const char *name, const merlin_image *whole)
 {
     char file[64], path[PATH_MAX];
     snprintf(file, sizeof file, "%s%s", name, relight_ending(w->job));
-    return img_write_picture(staging_path(w->staging, file, path), whole, w->job->format);
+    return merlin_image_write(staging_path(w->staging, file, path), whole);
 }
 
 status relight_write(relight_work *w, const relight_picture *p)
 {
-    img square = {0}, whole = {0};
+    merlin_image square = {0}, whole = {0};
     char name[32], label[RELIGHT_LABEL];
     snprintf(name, sizeof name, "%s_%03zu", p->name, p->number);
     relight_label(p->lights, p->count, label);
     watch_tell(w->job->watch, "relighting", (double)w->done++ / (double)relight_count_whole(w->job));
     status s = relight_square(w, p->lights, p->count, &square);
     if (s == OK && p->sheet) s = relight_sheet_add(p->sheet, &square, label);
-    if (s == OK) s = relight_frame(w, &square, &whole);
+    if (s == OK) s = merlin_relighter_place(w->relighter, &square, &whole);
     if (s == OK) s = write_named(w, name, &whole);
     if (s == OK && p->alone) s = write_named(w, p->name, &whole);
-    img_free(&square);
-    img_free(&whole);
+    merlin_image_free(&square);
+    merlin_image_free(&whole);
     return s;
 }

@@ -5,14 +5,13 @@
 
 #include "cli/relight/relight_job.h"
 #include "cli/relight/relight_sheet.h"
-#include "estimate/light/found_light.h"
-#include "estimate/relight/relighter.h"
+#include "merlin/merlin.h"
 
 typedef struct relight_work {
     const relight_job *job;
     staging *staging;
-    relighter relighter;
-    found_lights found; /* of a job's `found`; an orbit turns it */
+    merlin_relighter *relighter;
+    merlin_found_lights found; /* of a job's `found`; an orbit turns it */
     relight_result *result;
     size_t done; /* of relight_count_whole */
 } relight_work;
@@ -22,13 +21,11 @@ status relight_check(const relight_work *w);
 /* Tells whether surroundings go round in an orbit, and no lamp. */
 bool relight_surroundings_turn(const relight_job *job);
 /* Returns the lamps that shine together in picture i, and how many: the found light's, else the user's i-th, if any. */
-const lamp *relight_lamps(const relight_work *w, size_t i, int *count);
+const merlin_lamp *relight_lamps(const relight_work *w, size_t i, int *count);
 /* Returns how many pictures single lights take, or their surroundings alone. */
 size_t relight_count_lights(const relight_job *job);
 /* Renders the relighter's square under so many lamps together; counts what is burnt out. */
-status relight_square(relight_work *w, const lamp *lights, int count, img *out);
-/* The square in the photograph's frame. */
-status relight_frame(const relight_work *w, const img *square, img *out);
+status relight_square(relight_work *w, const merlin_lamp *lights, int count, merlin_image *out);
 /* ".png" or ".jpg" */
 const char *relight_ending(const relight_job *job);
 
@@ -36,10 +33,10 @@ const char *relight_ending(const relight_job *job);
 typedef struct relight_picture {
     const char *name; /* NAME_000.png or .jpg */
     size_t number;
-    const lamp *lights;   /* together; */
-    int count;            /* 0: the environment alone */
-    relight_sheet *sheet; /* where a small copy goes, or NULL */
-    bool alone;           /* as NAME.png or .jpg, too */
+    const merlin_lamp *lights; /* together; */
+    int count;                 /* 0: the environment alone */
+    relight_sheet *sheet;      /* where a small copy goes, or NULL */
+    bool alone;                /* as NAME.png or .jpg, too */
 } relight_picture;
 status relight_write(relight_work *w, const relight_picture *p);
 

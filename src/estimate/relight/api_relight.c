@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* merlin_relight, merlin_relight_environment and merlin_relighter: maps under other light. */
+/* merlin_relight, merlin_relight_environment and merlin_relight_found: a picture of maps under other light. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -7,13 +7,6 @@
 #include "estimate/photo/model_pair.h"
 #include "estimate/relight/maps_surface.h"
 #include "estimate/relight/relighter.h"
-
-enum { LARGEST_SIDE = 8000 };
-
-struct merlin_relighter {
-    network *network;
-    relighter relighter;
-};
 
 /* Copies the light, if there is one. */
 static status take_light(const float *light, lamp *place)
@@ -101,53 +94,4 @@ merlin_status merlin_relight_found(merlin_model *model, const merlin_maps *maps,
     if (s == OK) s = relight_maps(model, maps, &by, how, out);
     env_map_free(&lights.rest);
     return s;
-}
-
-/* ---- many lights ---- */
-
-merlin_status merlin_relighter_new(merlin_model *model, const merlin_maps *maps, int side, merlin_relighting how,
-                                   merlin_relighter **out)
-{
-    if (out) *out = NULL;
-    status s = api_needs(__func__, model && maps && out);
-    const lamp flash = lamp_at(vec3_make(0, 0, 0));
-    if (s == OK) s = relighter_check(how, &flash, false);
-    if (s == OK && (side < 0 || side > LARGEST_SIDE))
-        s = fail(MERLIN_WRONG_USE, "a relighter's side is 0 (as in the photograph) to %d pixels, not %d", LARGEST_SIDE,
-                 side);
-    if (s != OK) return s;
-    merlin_relighter *made = calloc(1, sizeof *made);
-    if (!made) return fail(MERLIN_NO_MEMORY, "no memory for a relighter");
-    made->network = model_network(model, maps, how);
-    s = relighter_new(made->network, maps, side, how, &made->relighter);
-    if (s != OK)
-        free(made);
-    else
-        *out = made;
-    return s;
-}
-
-merlin_status merlin_relighter_render(merlin_relighter *st, const float *light, const merlin_environment *environment,
-                                      merlin_image *out)
-{
-    if (out) *out = (merlin_image){0};
-    status s = api_needs(__func__, st && out);
-    if (s == OK && !light && !environment)
-        s = fail(MERLIN_WRONG_USE, "neither a light nor an environment to relight by");
-    lamp place;
-    img square = {0};
-    if (s == OK) s = take_light(light, &place);
-    if (s == OK) s = relighter_check(st->relighter.how, light ? &place : NULL, environment);
-    if (s == OK) s = relighter_surround(&st->relighter, environment ? &environment->map : NULL);
-    if (s == OK) s = relighter_render(st->network, &st->relighter, &place, light != NULL, &square);
-    if (s != OK) return s;
-    *out = square;
-    return MERLIN_OK;
-}
-
-void merlin_relighter_free(merlin_relighter *st)
-{
-    if (!st) return;
-    relighter_free(&st->relighter);
-    free(st);
 }

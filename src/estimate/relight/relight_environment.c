@@ -79,3 +79,13 @@ void merlin_environment_free(merlin_environment *e)
     env_map_free(&e->map);
     free(e);
 }
+
+void merlin_environment_turn(merlin_environment *e, float turn)
+{
+    if (e && isfinite(turn)) env_map_turn(&e->map, turn);
+}
+
+double merlin_environment_negative(const merlin_environment *e)
+{
+    return e ? e->negative : 0;
+}
