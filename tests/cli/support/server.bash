@@ -16,6 +16,7 @@ server_start() {
     : >"$scratch/server.txt"
     TMPDIR=${server_tmp:-$scratch/tmp} "$MERLIN" serve --port 0 --json "$@" >"$scratch/server.txt" 2>"$scratch/server.err" &
     server=$!
+    trap 'kill "$server" 2>/dev/null; rm -rf "$scratch"' EXIT
     for _ in {1..600}; do
         grep -q address "$scratch/server.txt" && break
         kill -0 "$server" 2>/dev/null || break
