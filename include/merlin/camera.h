@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* merlin/camera: a camera by its focal length and principal point, as calibrations tell it. */
+/* merlin/camera: a camera by its focal length and principal point, as calibrations give it. */
 #ifndef MERLIN_CAMERA_H
 #define MERLIN_CAMERA_H
 
@@ -8,9 +8,9 @@ extern "C" {
 #endif
 
 typedef struct merlin_camera {
-    float focal; /* focal length in pixels; 0: the camera is far away, its lines of sight are parallel */
-    float x, y;  /* principal point, pixels from the upper left corner of the picture; not asked for where focal is 0 */
-    float distance; /* of the object from the camera, its mean, in the unit of the lights' positions; 0: not known */
+    float focal;    /* focal length in pixels; 0: the camera is far away, and its lines of sight are parallel */
+    float x, y;     /* principal point in pixels from the upper left corner of the picture; ignored if focal is 0 */
+    float distance; /* mean distance of the object from the camera in the unit of the lights' positions; 0: unknown */
 } merlin_camera;
 
 #ifdef __cplusplus

@@ -3,12 +3,12 @@
  *
  *     merlin_capture *capture;
  *     merlin_surface surface;
- *
  *     if (merlin_capture_read("owl", NULL, &capture) || merlin_stereo(capture, NULL, &surface))
  *         fprintf(stderr, "%s\n", merlin_error());
  *
- * merlin/mesh.h makes triangles of it. One camera, one still object, one light at a time. Images, space, errors and who
- * frees what are as in merlin.h. */
+ * merlin/mesh.h makes triangles of it. A capture has one camera that does not move, one static object, and one light
+ * per picture; lights are distant or near, their directions or positions known or unknown. Images, space, errors and
+ * ownership are as in merlin.h. */
 #ifndef MERLIN_STEREO_H
 #define MERLIN_STEREO_H
 
@@ -26,112 +26,112 @@ extern "C" {
 typedef enum merlin_lighting {
     MERLIN_DISTANT_LIGHTS, /* their directions are known */
     MERLIN_NEAR_LIGHTS,    /* their positions are known */
-    MERLIN_UNKNOWN_LIGHTS  /* nothing is known but, perhaps, how strong they are */
+    MERLIN_UNKNOWN_LIGHTS  /* nothing is known except, possibly, their intensities */
 } merlin_lighting;
 
-/* A diffuse white surface appears with the value intensity * cos, or near ones' intensity * cos / distance^2. */
+/* A light. A diffuse white surface has the value intensity * cos, under near lights intensity * cos / distance^2. */
 typedef struct merlin_light {
-    float direction[3]; /* distant: from the object to the light. Near: where an LED points; 0, 0, 0: nowhere special */
-    float position[3];  /* near: in the camera's space, any unit */
-    float intensity[3]; /* a channel each, the first alone for grey pictures, 1e-15 to 1e15; 0, 0, 0: 1 */
-    float lobe;         /* near: the exponent of an LED's fall-off with the cosine of the angle to its direction */
+    float direction[3]; /* distant: from the object to the light. Near: axis of an LED; 0, 0, 0: none */
+    float position[3];  /* near: in the camera's space, in any unit */
+    float intensity[3]; /* of each channel, for grey pictures only the first, 1e-15 to 1e15; 0, 0, 0: 1 */
+    float lobe;         /* near: exponent of an LED's fall-off with the cosine of the angle to its axis */
 } merlin_light;
 
 typedef struct merlin_capture merlin_capture;
 
-/* Where a folder's files are. All zero is the usual case. */
+/* Files of a folder, and options. All zeros are the defaults. */
 typedef struct merlin_capture_files {
-    const char *lights;  /* lights.txt or an .lp file (for the pictures in the order of their names, if it names none
-                            of them); NULL: the folder's, or its LUCES or DiLiGenT layout */
-    const char *mask;    /* NULL: the folder's mask.png or *.mask.png, else what is brighter than black and than a dark
-                          * edge of the pictures */
-    const char *ambient; /* a picture without any of the lights; NULL: the folder's ambient.png or the like, if any */
-    int near_lights;     /* 1: the list holds positions in the camera's space; an .lp file's are about the object, how
-                          * far from the camera merlin_stereo finds if it is not known, unless all have z below 0 */
-    int unknown_lights;  /* 1: wherever lights are said to be, they are not known */
-    int linear;          /* 1: 8-bit pictures are linear, not sRGB, whatever a profile says */
-    float field_of_view; /* horizontal, degrees; 0: not known */
-    float distance;      /* of the object from the camera, in the unit of the lights' positions; 0: not known. For near
-                          * lights or a known field of view alone */
-    int (*stop)(void);   /* asked between pictures; returning nonzero ends the work with MERLIN_STOPPED; may be NULL */
-    merlin_progress progress; /* told of the pictures that are read, "reading"; may be NULL */
+    const char *lights;  /* lights.txt or an .lp file (in the order of the pictures' names, if it names none of them);
+                          * NULL: the folder's, or its LUCES or DiLiGenT layout */
+    const char *mask;    /* NULL: the folder's mask.png or *.mask.png, else the pixels that are brighter than black and
+                          * than a dark edge of the pictures */
+    const char *ambient; /* a picture without any of the lights; NULL: the folder's ambient.png or similar, if any */
+    int near_lights; /* 1: the list contains positions in the camera's space; those of an .lp file are relative to the
+                      * object, and merlin_stereo estimates its distance if it is unknown, unless all have z below 0 */
+    int unknown_lights;  /* 1: ignore where lights are listed to be */
+    int linear;          /* 1: 8-bit pictures are linear, not sRGB, whatever their profiles state */
+    float field_of_view; /* horizontal, degrees; 0: unknown */
+    float distance;    /* of the object from the camera, in the unit of the lights' positions; 0: unknown. Only for near
+                        * lights or a known field of view */
+    int (*stop)(void); /* called between pictures; a nonzero result ends the work with MERLIN_STOPPED; may be NULL */
+    merlin_progress progress; /* called for the pictures that are read, with "reading"; may be NULL */
     void *progress_context;
 } merlin_capture_files;
 
-/* PNG, JPEG, TIFF, EXR or raw pictures, else WebP, HEIC or HDR ones, and the lights they were taken under; 16-bit ones
- * are linear unless they say otherwise (a colour profile, a PNG's chunk, EXIF), raw ones always. files NULL: the usual
- * case. */
+/* Reads a capture: PNG, JPEG, TIFF, EXR or raw pictures, else WebP, HEIC or HDR ones, and their lights. 16-bit pictures
+ * are linear unless they state otherwise (a colour profile, a PNG's chunk, EXIF), raw ones always. files NULL: the
+ * defaults. */
 merlin_status merlin_capture_read(const char *folder, const merlin_capture_files *files, merlin_capture **out);
 
-/* What holds for all pictures that are added from memory. */
+/* Properties of all pictures that are added from memory. */
 typedef struct merlin_capture_params {
     merlin_lighting lighting;
-    int unknown_intensities; /* 1: how strong the lights are is not known */
+    int unknown_intensities; /* 1: the lights' intensities are unknown */
     float field_of_view;     /* horizontal, degrees; 0: the camera is far away (60 degrees with near lights) */
-    float distance;          /* of the object from the camera, in the unit of the lights' positions; 0: not known */
+    float distance;          /* of the object from the camera, in the unit of the lights' positions; 0: unknown */
 } merlin_capture_params;
 
-/* Without pictures yet. params NULL: distant lights of known intensities, a camera far away. mask: 1 channel, the
- * object where it is at least one half; NULL: what is brighter than black and than a dark edge of the pictures. */
+/* Makes a capture without pictures. params NULL: distant lights of known intensities, a camera far away. mask: 1
+ * channel, the object from one half on; NULL: pixels brighter than black and than a dark edge of the pictures. */
 merlin_status merlin_capture_new(const merlin_capture_params *params, const merlin_image *mask, merlin_capture **out);
-/* 1 or 3 channels of linear light in [0, 1], all pictures alike and of the mask's size; from 0.98 on a value counts as
- * saturated. light NULL: nothing is known of it. */
+/* Adds a picture: 1 or 3 channels of linear light in [0, 1], the same for all pictures, of the mask's size; values from
+ * 0.98 on count as saturated. light NULL: it is unknown. */
 merlin_status merlin_capture_add(merlin_capture *capture, const merlin_image *picture, const merlin_light *light);
 void merlin_capture_free(merlin_capture *capture);
 
 /* ---- the surface ---- */
 
 typedef enum merlin_stereo_method {
-    MERLIN_STEREO_AUTO,         /* by what is known of the lights: near, robust, semi or uncalibrated */
+    MERLIN_STEREO_AUTO,         /* depends on what is known about the lights: near, robust, semi or uncalibrated */
     MERLIN_STEREO_LS,           /* distant: Lambertian least squares (Woodham 1980) without shadows and saturation */
-    MERLIN_STEREO_ROBUST,       /* distant: a specular lobe a pixel; cast shadows as outliers */
-    MERLIN_STEREO_NEAR,         /* near: depth and normals by turns */
+    MERLIN_STEREO_ROBUST,       /* distant: a specular lobe per pixel; cast shadows as outliers */
+    MERLIN_STEREO_NEAR,         /* near: depth and normals alternately */
     MERLIN_STEREO_SEMI,         /* distant: directions known, intensities not */
-    MERLIN_STEREO_UNCALIBRATED, /* unknown, distant or near, of one strength or on one albedo */
+    MERLIN_STEREO_UNCALIBRATED, /* unknown, distant or near, of one intensity or on one albedo */
 } merlin_stereo_method;
 
 typedef struct merlin_stereo_params {
     merlin_stereo_method method;
-    int keep_edges; /* 1: depth may jump where the normals say so; else it is the least-squares surface of the normals.
-                       Lights with places are solved with depth, which may jump in any case */
-    int integrate;  /* 1: depth that is solved with the normals is integrated from them once more, held near what it was
-                     */
-    int iterations; /* of MERLIN_STEREO_NEAR and _SEMI, at most; 0: the method's own */
-    int unchecked;  /* 1: the result is not held against other lights, lenses and tones, which takes a part of the time
-                     * of solving; its warnings stay empty */
-    int (*stop)(void);        /* asked all along; returning nonzero ends the work with MERLIN_STOPPED; may be NULL */
-    merlin_progress progress; /* told "solving", then "integrating"; may be NULL */
+    int keep_edges; /* 1: depth may jump where the normals indicate it; else it is the least-squares surface of the
+                     * normals. With lights of known positions depth may jump in any case */
+    int integrate;  /* 1: depth that was found together with the normals is integrated from them again, close to what it
+                     * was */
+    int iterations; /* largest number for MERLIN_STEREO_NEAR and _SEMI; 0: the method's default */
+    int unchecked; /* 1: the result is not compared with other lights, lenses and tone curves, which takes a part of the
+                    * time of solving; its warnings stay empty */
+    int (*stop)(void);        /* called frequently; a nonzero result ends the work with MERLIN_STOPPED; may be NULL */
+    merlin_progress progress; /* called with "solving", then "integrating"; may be NULL */
     void *progress_context;
 } merlin_stereo_params;
 
-/* All of the pictures' size, zero where mask is. */
+/* A surface; all images have the pictures' size, and are zero outside the mask. */
 typedef struct merlin_surface {
-    merlin_image normal; /* 3, unit, z > 0 toward the camera */
-    merlin_image albedo; /* the pictures' channels; relative unless the intensities are known */
-    merlin_image depth; /* 1, along -z: in the unit of the distance (1 if that is not known), in pixels for a camera far
-                         * away; each separate piece of the mask has its own distance */
-    merlin_image residual; /* 1, root mean square of what the fit leaves, as a share of it */
-    merlin_image mask;     /* 1, 0 or 1 */
+    merlin_image normal;   /* 3 channels, unit, z > 0 toward the camera */
+    merlin_image albedo;   /* the pictures' channels; relative unless the intensities are known */
+    merlin_image depth;    /* 1 channel, along -z: in the unit of the distance (1 if that is unknown), in pixels for a
+                            * camera far away; each separate piece of the mask has its own distance */
+    merlin_image residual; /* 1 channel, root mean square residual of the fit, relative to it */
+    merlin_image mask;     /* 1 channel, 0 or 1 */
     merlin_camera camera;
-    merlin_stereo_method method; /* the one used */
+    merlin_stereo_method method; /* method that was used */
     merlin_light
-        *lights; /* light_count, one a picture, as MERLIN_STEREO_SEMI and _UNCALIBRATED found them; else NULL */
+        *lights; /* light_count, one per picture, as MERLIN_STEREO_SEMI and _UNCALIBRATED estimate them; else NULL */
     int light_count;
-    int lights_near;      /* MERLIN_STEREO_UNCALIBRATED: the lights have positions, too, in the unit of camera.distance
-                           * (1 if that is not known) */
-    int strengths_unsure; /* MERLIN_STEREO_SEMI on an object too flat, or with too few pictures (3), to tell how strong
-                             lights are: normals may be far off */
-    int distance_unsure;  /* MERLIN_STEREO_NEAR without a known distance, and with too few lights, or lights too much
-                             alike, to tell it: normals may be far off */
-    int lights_unsure;    /* MERLIN_STEREO_UNCALIBRATED where the pictures or the object's
-                             outline tell them badly: normals may be far off, or bulge where the object recedes */
-    merlin_warnings warnings; /* what speaks against the pictures, their lights and the result (docs/json.md has the
-                               * codes), these three among it; empty if params.unchecked */
+    int lights_near;      /* MERLIN_STEREO_UNCALIBRATED: whether the lights also have positions, in the unit of
+                           * camera.distance (1 if that is unknown) */
+    int strengths_unsure; /* MERLIN_STEREO_SEMI: the object is too flat, or the pictures are too few (3), to determine
+                           * the lights' intensities: normals may have large errors */
+    int distance_unsure;  /* MERLIN_STEREO_NEAR without a known distance: the lights are too few, or too similar, to
+                           * determine it: normals may have large errors */
+    int lights_unsure;    /* MERLIN_STEREO_UNCALIBRATED: the pictures or the object's outline hardly determine them:
+                           * normals may have large errors, or be convex where the object is concave */
+    merlin_warnings warnings; /* what contradicts the pictures, their lights and the result (docs/json.md lists the
+                               * codes), including these three; empty if params.unchecked */
 } merlin_surface;
 
-/* params NULL: MERLIN_STEREO_AUTO, least-squares depth. From 3 pictures on (MERLIN_STEREO_UNCALIBRATED: 7) to 1024
- * (MERLIN_STEREO_LS: 4096). Lights that a list has as places about the object are taken for near ones, if the method is
- * MERLIN_STEREO_AUTO or _NEAR, where that explains the pictures better than directions do. */
+/* Computes the surface. params NULL: MERLIN_STEREO_AUTO, least-squares depth. From 3 pictures on
+ * (MERLIN_STEREO_UNCALIBRATED: 7) to 1024 (MERLIN_STEREO_LS: 4096). Lights listed relative to the object count as near,
+ * with MERLIN_STEREO_AUTO or _NEAR, if that explains the pictures better than directions do. */
 merlin_status merlin_stereo(const merlin_capture *capture, const merlin_stereo_params *params, merlin_surface *out);
 void merlin_surface_free(merlin_surface *surface);
 

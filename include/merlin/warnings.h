@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* merlin/warnings: what should be known of a result before it is trusted.
+/* merlin/warnings: what one should know about a result before trusting it.
  *
  *     for (size_t i = 0; i < surface.warnings.count; i++)
  *         printf("%s: %s\n", surface.warnings.at[i].code, surface.warnings.at[i].message); */
@@ -15,14 +15,14 @@ extern "C" {
 enum { MERLIN_MOST_WARNINGS = 24, MERLIN_WARNING_WORDS = 512 };
 
 typedef struct merlin_warning {
-    const char *code;                   /* a name for programs, in snake_case, as in reports (docs/json.md) */
-    char message[MERLIN_WARNING_WORDS]; /* a sentence for a person, without a full stop */
+    const char *code;                   /* name for programs, in snake_case, as in reports (docs/json.md) */
+    char message[MERLIN_WARNING_WORDS]; /* sentence for a person, without a full stop */
 } merlin_warning;
 
-/* The gravest come first. Nothing in it is to be freed. */
+/* Warnings, the most serious first. Nothing in it needs to be freed. */
 typedef struct merlin_warnings {
-    size_t count; /* those in the list */
-    size_t more;  /* those that it had no room for */
+    size_t count; /* number in the list */
+    size_t more;  /* number for which it had no room */
     merlin_warning at[MERLIN_MOST_WARNINGS];
 } merlin_warnings;
 
