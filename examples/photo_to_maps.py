@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Two photographs of a figurine, by a flash and by a window, to a picture like the README's: photograph, albedo, normals,
-roughness / depth, reconstruction, light from the left and from the right. Cells for an editor or a notebook; as a
-program, `python3 examples/photo_to_maps.py`, it writes maps.png and lamp.png into the current folder."""
+"""Two photographs of a figurine, by a flash and by a window, to the README's picture: photograph, albedo, normals,
+roughness, depth, reconstruction, light from the left and from the right. Cells for an editor or a notebook; as a
+program, `python3 examples/photo_to_maps.py`, it writes flash.png, window.png and lamp.webp into the current folder."""
 
 # %% The package, and where the photographs are
 import os
@@ -21,14 +21,9 @@ for maps in (flash, window):
 
 # %% Numbers as shades of grey or colours
 def shown(values):
-    """What write_image, which encodes linear light as sRGB, shows as these values in [0, 1]."""
+    """What a picture, which encodes linear light as sRGB, shows as these values in [0, 1]."""
     values = np.clip(values, 0, 1)
     return np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
-
-
-def grey(values):
-    """H x W to H x W x 3."""
-    return np.repeat(values[:, :, None], 3, axis=2)
 
 
 def near_is_bright(depth, mask):
@@ -37,26 +32,21 @@ def near_is_bright(depth, mask):
     return np.where(mask, 1 - 0.6 * (depth - near) / max(far - near, 1e-6), 0)
 
 
-# %% Eight pictures of a photograph
-def pictures(maps):
-    """Two rows of four."""
+# %% Eight pictures of each photograph
+def tiles(maps, of):
+    """Two rows of four, by what stands below them."""
     mask = maps.mask > 0.5
-    return [[maps.photo, maps.albedo, shown((maps.normal + 1) / 2 * mask[:, :, None]), shown(grey(maps.roughness))],
-            [shown(grey(near_is_bright(maps.depth, mask))), maps.reconstruction, maps.relight((-0.67, 0.47, -0.43)),
-             maps.relight((0.77, 0.28, -0.43))]]
+    return {f"photograph by {of}": maps.photo, "albedo": maps.albedo,
+            "normal": shown((maps.normal + 1) / 2 * mask[:, :, None]), "roughness": shown(maps.roughness),
+            "depth": shown(near_is_bright(maps.depth, mask)), "reconstruction": maps.reconstruction,
+            "light from the left": maps.relight((-0.67, 0.47, -0.43)),
+            "light from the right": maps.relight((0.77, 0.28, -0.43))}
 
 
-def sheet(rows, gap=8):
-    """The pictures beside and below one another, with gaps."""
-    padded = [[np.pad(picture, ((gap, gap), (gap, gap), (0, 0)), constant_values=0.013) for picture in row]
-              for row in rows]
-    return np.vstack([np.hstack(row) for row in padded])
-
-
-merlin.write_image("maps.png", sheet(pictures(flash) + pictures(window)))
+merlin.write_sheet("flash.png", tiles(flash, "flash"))
+merlin.write_sheet("window.png", tiles(window, "window"))
 
 # %% A lamp that goes from left to right: one relighter, many lights
 relighter = flash.relighter(256)
-turns = np.radians(np.linspace(-70, 70, 8))
-lit = [relighter((0.9 * np.sin(turn), 0.3, 0.9 * np.cos(turn) - 1)) for turn in turns]
-merlin.write_image("lamp.png", sheet([lit[:4], lit[4:]], gap=4))
+turns = np.radians(np.concatenate([np.linspace(-70, 70, 15), np.linspace(60, -60, 13)]))
+merlin.write_animation("lamp.webp", [relighter((0.9 * np.sin(turn), 0.3, 0.9 * np.cos(turn) - 1)) for turn in turns])

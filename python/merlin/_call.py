@@ -16,7 +16,7 @@ import numpy as np
 from . import _headers, _library
 from .errors import BY_STATUS, BadInputError, MerlinError, MissingFileError
 
-library = _library.load()
+library, library_path = _library.load()
 free = ctypes.CDLL(None).free  # of the C library, for what a caller gives back to it
 free.argtypes, free.restype = [ctypes.c_void_p], None
 
@@ -71,7 +71,7 @@ class Watch:
         self._raised: Optional[BaseException] = None
         self._handler: Any = None
         self._signal: Any = None
-        self._callbacks = (_headers.Stop(self._stop), _headers.Progress(self._progress))
+        self._callbacks: Any = (_headers.Stop(self._stop), _headers.Progress(self._progress))
 
     def put(self, params: Any) -> None:
         """Sets the three fields of params; the watch must live as long as they are used."""
@@ -124,7 +124,7 @@ class Watch:
             if status != _headers.OK:
                 words = library.merlin_error().decode("utf-8", "replace")
         finally:
-            self._callbacks = ()  # which point back here
+            self._callbacks = None  # which point back here
             self._release()
         if status != _headers.OK:
             raise error_of(status, words, path)
@@ -157,7 +157,7 @@ class _Memory:
         self.__array_interface__ = {"version": 3, "typestr": typestr, "shape": shape, "data": (address, False)}
 
 
-def view(owner: Any, image: Any) -> Optional[np.ndarray]:
+def view(owner: Any, image: Any) -> Any:
     """An image as an array without a copy: H x W, or H x W x 3; None where it has no data."""
     if not image.data:
         return None
@@ -165,11 +165,12 @@ def view(owner: Any, image: Any) -> Optional[np.ndarray]:
     return np.asarray(_Memory(owner, image.data, shape, "<f4"))
 
 
-def view_of(owner: Any, pointer: Any, shape: tuple, typestr: str = "<f4") -> Optional[np.ndarray]:
+def view_of(owner: Any, pointer: Any, shape: tuple, typestr: str = "<f4") -> Any:
     """What a pointer of the library points to, as an array without a copy; None where there is nothing."""
     if not pointer:
         return None
-    return np.asarray(_Memory(owner, ctypes.cast(pointer, ctypes.c_void_p).value, shape, typestr))
+    address = ctypes.cast(pointer, ctypes.c_void_p).value
+    return np.asarray(_Memory(owner, address or 0, shape, typestr))
 
 
 def written_paths(files: Owner) -> List[str]:

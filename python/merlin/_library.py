@@ -9,7 +9,7 @@ from __future__ import annotations
 import ctypes
 import os
 import re
-from typing import Any, Dict, List, Optional
+from typing import Any, Dict, List, Optional, Tuple
 
 from . import _headers
 from .errors import MissingFileError
@@ -90,16 +90,15 @@ def _declare(library: ctypes.CDLL, path: str) -> None:
         function.restype, function.argtypes = returned, taken
 
 
-def load() -> ctypes.CDLL:
-    """Loads the library and declares its functions; ImportError, one line, says what is missing."""
+def load() -> Tuple[ctypes.CDLL, str]:
+    """Loads the library and declares its functions; returns its path, too. ImportError, one line, says what is missing."""
     path = _candidates()[0]
     try:
         library = ctypes.CDLL(path)
     except OSError as error:
         raise _explain(path, error) from None
     _declare(library, path)
-    library.merlin_path = path
-    return library
+    return library, path
 
 
 def shipped_weights(name: str) -> Optional[str]:

@@ -40,8 +40,9 @@ class Light(NamedTuple):
 
 def light_of(struct: Any) -> Light:
     """The structure as a tuple of arrays."""
-    return Light(*(np.array(getattr(struct, name), dtype=np.float32) for name in ("direction", "position", "intensity")),
-                 struct.lobe)
+    direction, position, intensity = (
+        np.array(one, dtype=np.float32) for one in (struct.direction, struct.position, struct.intensity))
+    return Light(direction, position, intensity, struct.lobe)
 
 
 class Capture:
@@ -81,15 +82,16 @@ class Capture:
         watch.check("capture_read", name, ctypes.byref(files), made._owner.at, path=os.fsdecode(name))
         return made
 
-    def add(self, picture: Picture, light: Optional[Light] = None, *, linear: Optional[bool] = None) -> None:
+    def add(self, picture: Any, light: Optional[Light] = None, *, linear: Optional[bool] = None) -> None:
         """Adds a picture, a file or an array of H x W or H x W x 3, all alike and of the mask's size; linear values in
         [0, 1], from 0.98 on they count as saturated. light: None: nothing is known of it."""
         color, _alpha = pictures.picture(picture, linear, "a picture of a capture")
-        image, _kept = color.struct, color
+        image, kept = color.struct, None
         if not is_path(picture) and (np.ndim(picture) == 2 or np.shape(picture)[2] == 1):
-            image, _kept = pictures.image_for(view(color, color.struct)[:, :, 0])
+            image, kept = pictures.image_for(view(color, color.struct)[:, :, 0])
         check("capture_add", self._owner.struct, ctypes.byref(image),
               None if light is None else ctypes.byref(light._struct()))
+        del kept
 
     def stereo(self, method: str = "auto", *, keep_edges: bool = False, integrate: bool = False, iterations: int = 0,
                check_result: bool = True, progress: Optional[ProgressCallback] = None,
@@ -183,7 +185,7 @@ def _lights(lights: Any, positions: Any, intensities: Any, count: int) -> Tuple[
 
 
 def stereo(images: Union[Capture, PathLike, Sequence[Picture], np.ndarray], lights: Any = None, *,
-           positions: Any = None, intensities: Any = None, mask: Optional[Picture] = None, method: str = "auto",
+           positions: Any = None, intensities: Any = None, mask: Any = None, method: str = "auto",
            field_of_view: float = 0.0, distance: float = 0.0, linear: Optional[bool] = None, **options: Any) -> Surface:
     """The surface of an object from pictures of it under many lights.
 
@@ -194,16 +196,17 @@ def stereo(images: Union[Capture, PathLike, Sequence[Picture], np.ndarray], ligh
     Capture.stereo."""
     if isinstance(images, Capture):
         return images.stereo(method, **options)
-    if is_path(images):
+    many: Any = images
+    if is_path(many):
         if positions is not None or intensities is not None:
             raise ValueError("positions and intensities of a folder are in its files; Capture.read has near=True")
-        capture = Capture.read(images, lights=lights, mask=mask, linear=bool(linear), field_of_view=field_of_view,
+        capture = Capture.read(many, lights=lights, mask=mask, linear=bool(linear), field_of_view=field_of_view,
                                distance=distance, progress=options.get("progress"), stop=options.get("stop"))
         return capture.stereo(method, **options)
-    images = list(images)
-    lighting, known = _lights(lights, positions, intensities, len(images))
+    many = list(many)
+    lighting, known = _lights(lights, positions, intensities, len(many))
     capture = Capture(lighting, mask=mask, unknown_intensities=isinstance(intensities, str),
                       field_of_view=field_of_view, distance=distance)
-    for picture, light in zip(images, known):
+    for picture, light in zip(many, known):
         capture.add(picture, light, linear=linear)
     return capture.stereo(method, **options)

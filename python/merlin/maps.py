@@ -62,7 +62,7 @@ class Maps:
 
     def __init__(self, owner: Owner, model: "Optional[Model]") -> None:
         self._owner, self._model = owner, model
-        self._views = {name: view(owner, getattr(owner.struct, name)) for name in h.MAP_NAMES
+        self._views: Dict[str, Any] = {name: view(owner, getattr(owner.struct, name)) for name in h.MAP_NAMES
                        if getattr(owner.struct, name).data}
 
     @property
@@ -97,7 +97,7 @@ class Maps:
     @property
     def slant(self) -> Tuple[float, float]:
         """Where the crop's middle is as seen from the lens: sines to the right and upwards."""
-        return tuple(self._struct.slant)
+        return self._struct.slant[0], self._struct.slant[1]
 
     @property
     def gain(self) -> float:

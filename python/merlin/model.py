@@ -99,7 +99,8 @@ class _Ahead(threading.Thread):
 
     def __init__(self, work: Any) -> None:
         super().__init__(daemon=True)
-        self._work, self._result, self._error = work, None, None
+        self._work, self._result = work, None
+        self._error: Optional[BaseException] = None
         self.start()
 
     def run(self) -> None:
@@ -201,7 +202,7 @@ class Model:
         warn(maps.doubts)
         return maps
 
-    def _begin(self, photo: Picture, mask: Any, linear: Optional[bool], hint: Any, params: Any) -> Tuple[Owner, Owner]:
+    def _begin(self, photo: Any, mask: Any, linear: Optional[bool], hint: Any, params: Any) -> Tuple[Owner, Owner]:
         """The photograph and its object; the first time beside what the model begins with, as the command does it."""
 
         def take() -> Tuple[Owner, Owner]:

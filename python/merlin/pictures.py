@@ -86,7 +86,7 @@ def from_file(path: PathLike) -> Tuple[Owner, Owner]:
     return color, alpha
 
 
-def picture(source: Picture, linear: Optional[bool] = None, what: str = "a photograph") -> Tuple[Owner, Owner]:
+def picture(source: Any, linear: Optional[bool] = None, what: str = "a photograph") -> Tuple[Owner, Owner]:
     """A file or an array, as an image and its alpha."""
     if is_path(source):
         return from_file(source)

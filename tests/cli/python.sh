@@ -46,7 +46,7 @@ succeeds 'merlin-any (128, 128, 3)' "$scratch/env/bin/python" -W ignore -c "
 import merlin
 photo, mask = merlin.read_image('$MERLIN_SOURCE_DIR/examples/demo.png')
 maps = merlin.Model('merlin-any').estimate(photo[::4, ::4], mask[::4, ::4], size=64, views=1)
-assert '$scratch/env' in merlin._library.merlin_path
+assert '$scratch/env' in merlin._call.library_path
 print(maps.model_name, maps.albedo.shape)"
 
 echo "a library that is missing is named with the command that installs it"
