@@ -3,7 +3,7 @@
 MERLIN = build/release/merlin
 OUT = out/demo
 
-.PHONY: all build demo install blender test test-debian product asan debug check format fuzz setup-build setup-test setup-check clean
+.PHONY: all build demo install wheel blender test test-debian product asan debug check format fuzz setup-build setup-test setup-check clean
 
 all: build
 
@@ -31,6 +31,12 @@ install: build
 	cmake --build --preset release --target libmerlin
 	cmake --install build/release --prefix "$(PREFIX)"
 	@if [ "$$(id -u)" = 0 ]; then ldconfig || true; fi
+
+# The Python package with the library and the weights, for pip, by Debian's setuptools alone.
+wheel: setup-test
+	@mkdir -p build/wheel
+	/usr/bin/python3 -m pip wheel -q --no-index --no-deps --no-build-isolation --disable-pip-version-check -w build/wheel ./python
+	@ls build/wheel/*.whl
 
 # The Blender add-on as a zip, the same wherever it is made.
 blender:

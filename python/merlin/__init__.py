@@ -15,43 +15,42 @@ Images are linear sRGB float32, rows from the top. Space: the camera is at the o
 the object stands near (0, 0, -1). What goes wrong is a MerlinError with the library's sentence. Several threads may
 call; a process that is forked after the first call may not.
 """
-from ._call import call as _call
-from ._call import check as _check
-from ._call import library as _library
-from ._call import whole as _whole
+from . import _call
 from .calibration import Calibration, calibrate
 from .capture import Capture, Light, Surface, stereo
 from .errors import (BadInputError, CannotWriteError, DeviceError, MerlinError, MerlinWarning, MissingFileError,
                      NoMemoryError, StoppedError, WrongUseError)
 from .exporting import Exported
+from .lights import Environment, Lamp, dome, dome_directions, orbit, read_lamps, temperature_color
 from .maps import Maps, Mended
 from .mesh import Mesh
 from .model import FoundObject, Model, estimate, find_object, read_shot
 from .pictures import encode_image, read_image, read_mask, resize_image, to_pixels, write_animation, write_image
 from .pictures import write_mask, write_sheet
-from .relighting import Environment, Relighter
+from .relighting import Relighter
 from .results import Camera, Circle, Crop, FoundLight, Notice, Shot, SkippedFile
 from .weights import Tensor, Weights
 
-__version__: str = _library.merlin_version().decode()
+__version__: str = _call.library.merlin_version().decode()
 
 
 def set_threads(count: int) -> None:
     """How many threads work for each that calls the library, from its next call on: 1 to 1024, or as many of them as
     can be had. Without it OMP_NUM_THREADS, else one a processor."""
-    _check("set_threads", _whole(count, "the number of threads"))
+    _call.check("set_threads", _call.whole(count, "the number of threads"))
 
 
 def version() -> str:
     """Of the library that runs, "0.1.0"."""
-    return _call("version").decode()
+    return _call.call("version").decode()
 
 
 __all__ = [
     "BadInputError", "Calibration", "Camera", "CannotWriteError", "Capture", "Circle", "Crop", "DeviceError",
-    "Environment", "Exported", "FoundLight", "FoundObject", "Light", "Maps", "Mended", "MerlinError", "MerlinWarning",
-    "Mesh", "MissingFileError", "Model", "NoMemoryError", "Notice", "Relighter", "Shot", "SkippedFile",
-    "StoppedError", "Surface", "Tensor", "Weights", "WrongUseError", "calibrate", "encode_image", "estimate",
-    "find_object", "read_image", "read_mask", "read_shot", "resize_image", "set_threads", "stereo", "to_pixels",
-    "version", "write_animation", "write_image", "write_mask", "write_sheet",
+    "Environment", "Exported", "FoundLight", "FoundObject", "Lamp", "Light", "Maps", "Mended", "MerlinError",
+    "MerlinWarning", "Mesh", "MissingFileError", "Model", "NoMemoryError", "Notice", "Relighter", "Shot",
+    "SkippedFile", "StoppedError", "Surface", "Tensor", "Weights", "WrongUseError", "calibrate", "dome",
+    "dome_directions", "encode_image", "estimate", "find_object", "orbit", "read_image", "read_lamps", "read_mask",
+    "read_shot", "resize_image", "set_threads", "stereo", "temperature_color", "to_pixels", "version",
+    "write_animation", "write_image", "write_mask", "write_sheet",
 ]

@@ -5,14 +5,14 @@ from __future__ import annotations
 import ctypes
 import json
 import os
-from typing import TYPE_CHECKING, Any, Dict, Iterable, NamedTuple, Optional, Tuple, Union
+from typing import TYPE_CHECKING, Any, Dict, Iterable, List, NamedTuple, Optional, Tuple, Union
 
 import numpy as np
 
 from . import _headers as h
 from . import exporting, mesh
 from ._call import Owner, ProgressCallback, StopCallback, Watch, call, check, free, optional_path, path_bytes
-from ._call import view, whole
+from ._call import vector3, view, whole
 from .errors import WrongUseError
 from .mesh import Mesh
 from .pictures import PathLike
@@ -20,7 +20,8 @@ from .results import Crop, FoundLight, Notice, found_light, notices, warn
 
 if TYPE_CHECKING:
     from .model import Model
-    from .relighting import Environment, Relighter
+    from .lights import Environment, Lamp
+    from .relighting import Relighter
 
 
 class Mended(NamedTuple):
@@ -207,8 +208,8 @@ class Maps:
                 model: "Optional[Model]" = None) -> np.ndarray:
         """The object under other light: H x W x 3 float32, linear, in [0, 1], of the photograph's exposure.
 
-        light: a lamp's place (x, y, z) in scene units, of the flash's power, (0, 0, 0) being the lens; "found": the
-        light that was found in the photograph; or None. environment: surroundings, an Environment or a
+        light: a lamp's place (x, y, z) in scene units, of the flash's power, (0, 0, 0) being the lens; a Lamp; several
+        of either together; "found": the light that was found in the photograph; or None. environment: surroundings, an Environment or a
         latitude-longitude picture's path, with the lamp or alone. turn: degrees by which the found light or the
         picture is turned about the vertical, at 90 what was ahead of the camera is to its right. exposure: EV, of a
         picture's path. by: "brdf" (with cast shadows and the network's global illumination), "direct" (without the
@@ -222,6 +223,24 @@ class Maps:
         the pictures, which show the square `crop`; 0: as many as it has; at most 8000."""
         from .relighting import Relighter
         return Relighter(self, side, by=by, model=model)
+
+    def found_lights(self, turn: float = 0.0) -> "Tuple[List[Lamp], Optional[Environment]]":
+        """The light that was found in the photograph, turned about the vertical by so many degrees: its lamps and, unless
+        that is dark, what is around. BadInputError where nothing is known."""
+        from .lights import found_lights
+        return found_lights(self, turn)
+
+    @property
+    def field_of_view(self) -> float:
+        """How wide the whole photograph is, in degrees: by its lens, else as if the square `crop` were 60 degrees wide."""
+        return call("maps_field_of_view", self._owner.at)
+
+    def lens_place(self, place: Any) -> np.ndarray:
+        """Takes a place (x, y, z) from the maps' space to that of the lens, whose axis is the middle of the photograph:
+        as positions of near lights are for `stereo`."""
+        out = h.floats3()
+        call("maps_lens_place", self._owner.at, vector3(place, "a place"), out)
+        return np.array(out, dtype=np.float32)
 
     def mesh(self, side: int = 0, texture_side: int = 0) -> Mesh:
         """The object's front as triangles, about (0, 0, -1). side: of the square around the object, in vertices; 0:

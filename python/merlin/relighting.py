@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import ctypes
-import os
 import threading
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 
 from . import _headers as h
-from ._call import Owner, check, choice, path_bytes, real, vector3, view, whole
-from .pictures import PathLike, new_image
+from ._call import Owner, call, check, choice, real, view, whole
+from .lights import Environment, environment_of, lamps_of
+from .pictures import PathLike, image_for, new_image
 
 if TYPE_CHECKING:
     from .maps import Maps
@@ -20,50 +20,37 @@ if TYPE_CHECKING:
 WAYS = {"brdf": h.BY_BRDF, "network": h.BY_NETWORK, "unshadowed": h.BY_BRDF_UNSHADOWED, "direct": h.BY_BRDF_DIRECT}
 
 
-class Environment:
-    """Surroundings: a latitude-longitude picture, Radiance HDR or EXR, twice as wide as high; up is its top row,
-    straight ahead of the camera its middle column, right of that the camera's right.
-
-    turn: degrees about the vertical. exposure: EV; at 0 a white object is about as bright as under the flash."""
-
-    def __init__(self, path: PathLike, turn: float = 0.0, exposure: float = 0.0) -> None:
-        name = path_bytes(path)
-        self._owner = Owner(ctypes.c_void_p(), "environment_free")
-        check("environment_read", name, real(turn, "turn"), real(exposure, "exposure"), self._owner.at,
-              path=os.fsdecode(name))
-
-
-def _environment(source: Any, turn: float, exposure: float) -> Optional[Environment]:
-    if source is None or isinstance(source, Environment):
-        if source is not None and (turn or exposure):
-            raise ValueError("an Environment has its turn and exposure already")
-        return source
-    return Environment(source, turn, exposure)
-
-
-def _lamp(light: Any) -> Any:
-    return None if light is None else vector3(light, "a light's place")
-
-
 def relight(model: "Model", maps: "Maps", light: Any, environment: Any, turn: float, exposure: float,
             by: str) -> np.ndarray:
     """As Maps.relight."""
     how = choice(by, WAYS, "by")
-    handle, out = model._handle, new_image()
     if isinstance(light, str):
         if light != "found" or environment is not None:
-            raise ValueError('light is (x, y, z) or "found", and the latter stands alone')
-        check("relight_found", handle.struct, maps._sound(), real(turn, "turn"), how, out.at)
+            raise ValueError('light is a place, lamps or "found", and the latter stands alone')
+        out = new_image()
+        check("relight_found", model._handle.struct, maps._sound(), real(turn, "turn"), how, out.at)
         return view(out, out.struct)
     if environment is None and (turn or exposure):
         raise ValueError('turn and exposure are of an environment, or turn of light="found"')
-    around = _environment(environment, turn, exposure)
-    if light is None and around is None:
-        raise ValueError("there is no light: give light=(x, y, z), light=\"found\" or an environment")
+    around = environment_of(environment, turn, exposure)
+    lamps, count = lamps_of(light)
+    if not count and around is None:
+        raise ValueError('there is no light: give light=(x, y, z), lamps, light="found" or an environment')
+    if count == 0 or (count == 1 and not lamps[0].distant and list(lamps[0].power) == [1, 1, 1]):
+        return _relight_one(model, maps, lamps[0].at if count else None, around, how)
+    for i in range(count):
+        check("relighting_check", how, ctypes.byref(lamps[i]), int(around is not None))
+    with Relighter(maps, by=by, model=model) as relighter:
+        return relighter.place(relighter.render(light, around))
+
+
+def _relight_one(model: "Model", maps: "Maps", place: Any, around: Optional[Environment], how: int) -> np.ndarray:
+    """Under one lamp of the flash's power, in surroundings, or both: in less memory than a relighter takes."""
+    out = new_image()
     if around is None:
-        check("relight", handle.struct, maps._sound(), _lamp(light), how, out.at)
+        check("relight", model._handle.struct, maps._sound(), place, how, out.at)
     else:
-        check("relight_environment", handle.struct, maps._sound(), around._owner.struct, _lamp(light), how, out.at)
+        check("relight_environment", model._handle.struct, maps._sound(), around._owner.struct, place, how, out.at)
     return view(out, out.struct)
 
 
@@ -77,19 +64,66 @@ class Relighter:
         self._lock = threading.Lock()
         check("relighter_new", handle.struct, maps._sound(), whole(side, "side"), how, self._owner.at)
 
+    @property
+    def _handle(self) -> Any:
+        if self._owner is None:
+            raise ValueError("this relighter is closed")
+        return self._owner.struct
+
     def render(self, light: Any = None, environment: Union[Environment, PathLike, None] = None) -> np.ndarray:
-        """The square `crop` under a lamp at (x, y, z), in surroundings, or both: side x side x 3 float32, linear, in
-        [0, 1], zero beside the object."""
-        around = _environment(environment, 0.0, 0.0)
-        lamp, out = _lamp(light), new_image()
+        """The square `crop` under light: side x side x 3 float32, linear, in [0, 1], zero beside the object.
+
+        light: a lamp's place (x, y, z), a Lamp, several of either together, or None. environment: surroundings, with
+        them or alone."""
+        around = environment_of(environment)
+        (lamps, count), out = lamps_of(light), new_image()
         with self._lock:
-            if self._owner is None:
-                raise ValueError("this relighter is closed")
-            check("relighter_render", self._owner.struct, lamp, None if around is None else around._owner.struct,
-                  out.at)
+            check("relighter_render_lamps", self._handle, lamps, count,
+                  None if around is None else around._owner.struct, out.at)
         return view(out, out.struct)
 
     __call__ = render
+
+    @property
+    def mask(self) -> np.ndarray:
+        """The object in its pictures: side x side, coverage in [0, 1]; a copy."""
+        with self._lock:
+            image = call("relighter_mask", self._handle).contents
+            return view(self._owner, image).copy()
+
+    @property
+    def white(self) -> float:
+        """The radiance that is white in its pictures, at first as the photograph was exposed; may be set."""
+        with self._lock:
+            return call("relighter_white", self._handle)
+
+    @white.setter
+    def white(self, radiance: float) -> None:
+        with self._lock:
+            check("relighter_set_white", self._handle, real(radiance, "white"))
+
+    def meter(self, light: Any = None, environment: Union[Environment, PathLike, None] = None) -> float:
+        """The white that leaves all but a thousandth of the object's values below it under each of these lamps; without
+        lamps, in these surroundings."""
+        around, white = environment_of(environment), ctypes.c_float()
+        lamps, count = lamps_of(light)
+        with self._lock:
+            check("relighter_meter", self._handle, lamps, count, None if around is None else around._owner.struct,
+                  ctypes.byref(white))
+        return white.value
+
+    def make_matte(self) -> None:
+        """Takes the gloss away from all pictures that follow."""
+        with self._lock:
+            check("relighter_make_matte", self._handle)
+
+    def place(self, square: np.ndarray) -> np.ndarray:
+        """Puts a picture of the photograph's resolution into its frame: H x W x 3, black beside the object."""
+        struct, _kept = image_for(square)
+        out = new_image()
+        with self._lock:
+            check("relighter_place", self._handle, ctypes.byref(struct), out.at)
+        return view(out, out.struct)
 
     def close(self) -> None:
         """Frees it, when a picture that is being made is done."""

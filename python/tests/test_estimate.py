@@ -122,12 +122,58 @@ def test_a_relighter_is_as_relight(kept_maps):
         picture = relighter((0.5, 0, -0.5))
         assert picture.shape == (64, 64, 3) and picture.max() > 0.05
         np.testing.assert_array_equal(picture, relighter.render((0.5, 0, -0.5)))
-        with pytest.raises(merlin.WrongUseError, match="neither a light nor"):
+        with pytest.raises(merlin.WrongUseError):
             relighter.render()
     with pytest.raises(ValueError, match="closed"):
         relighter((0, 0, 0))
     with pytest.raises(merlin.WrongUseError, match="8000"):
         kept_maps.relighter(9000)
+
+
+def test_lamps_are_colourful_and_several(kept_maps):
+    """Each adds its light."""
+    red = merlin.Lamp((0.5, 0, -0.5), power=(1, 0, 0))
+    far = merlin.Lamp((-1, 0, 1), distant=True, power=0.5)
+    with kept_maps.relighter(64, by="direct") as relighter:
+        relighter.white = 4 * relighter.white
+        one, other, both = (relighter(light) for light in (red, far, [red, far]))
+        np.testing.assert_allclose(both, one + other, atol=2e-3)
+        assert one[:, :, 1:].max() == 0 < one.max() and relighter.mask.shape == (64, 64)
+        assert relighter.meter([red]) > 0
+        before = relighter((0, 0, 0))
+        relighter.make_matte()
+        assert relighter((0, 0, 0)).sum() < before.sum()
+    assert kept_maps.relight([red, (0, 0, 0)], by="direct").shape == kept_maps.albedo.shape
+    for wrong in ([], (1, 2), merlin.Lamp((0, np.nan, 0)), merlin.Lamp((0, 0, 0), power=(1, 2)), [[1, 2, 3], "x"]):
+        with pytest.raises(ValueError):
+            kept_maps.relight(wrong)
+
+
+def test_domes_and_orbits_have_lamps(tmp_path):
+    """And lists of lights."""
+    lamps, directions = merlin.dome(20), merlin.dome_directions(20)
+    assert len(lamps) == 20 and lamps[0].distant and not merlin.dome(3, near=1.5)[0].distant
+    np.testing.assert_allclose(np.linalg.norm(directions, axis=1), 1, atol=1e-5)
+    assert merlin.orbit(8)[0].at[0] > 0.5
+    assert merlin.temperature_color(2000)[0] == 1 > merlin.temperature_color(2000)[2]
+    (tmp_path / "lights.lp").write_text("1\na.png 0 0 1\n")
+    assert len(merlin.read_lamps(tmp_path / "lights.lp")) == 1
+    for wrong in (lambda: merlin.dome(0), lambda: merlin.orbit(-1), lambda: merlin.temperature_color(10),
+                  lambda: merlin.dome(2**40), lambda: merlin.read_lamps(tmp_path / "none")):
+        with pytest.raises(ValueError):
+            wrong()
+
+
+def test_the_found_light_can_be_taken(kept_maps):
+    """And put back, as "found" does it."""
+    lamps, around = kept_maps.found_lights()
+    back = kept_maps.relight(lamps or None, environment=around, by="direct")
+    np.testing.assert_allclose(back, kept_maps.relight("found", by="direct"), atol=0.02)
+    if around is not None:
+        around.turn(90)
+        assert around.negative == 0
+    assert 1 < kept_maps.field_of_view < 150
+    np.testing.assert_allclose(kept_maps.lens_place((0, 0, 0)), 0, atol=1e-6)
 
 
 def test_changed_maps_are_relit_as_changed(maps):
