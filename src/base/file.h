@@ -13,7 +13,7 @@
 /* Opens a file for reading in binary; returns NULL and sets errno as fopen does. Pipes, sockets and devices are not
  * opened for reading: fstat on the result tells what they are, so that the caller can refuse them. */
 FILE *file_open(const char *path);
-/* The same as a descriptor: -1 and errno as open's. */
+/* Does the same for a descriptor; returns -1 and errno as open does. */
 int file_open_descriptor(const char *path);
 /* Checks a path before a library opens it by name: MERLIN_BAD_INPUT if it is missing or is not a plain file, as opening
  * a pipe could wait forever. */

@@ -36,7 +36,7 @@ static const char *first_in(const char *folder, const char *const *names)
     return *names;
 }
 
-/* In capitals or not, as readers of captures have it. */
+/* Tells whether a name is among others, in any case, as for readers of captures. */
 static bool is_among(const char *const *names, const char *name)
 {
     while (*names && strcasecmp(*names, name) != 0)
@@ -44,7 +44,7 @@ static bool is_among(const char *const *names, const char *name)
     return *names != NULL;
 }
 
-/* Tells whether the folder has a file that says where the lights of the pictures beside it were. */
+/* Finds out whether the folder has a file with the lights of its pictures. */
 static status find_capture(const char *folder, bool *holds)
 {
     static const char *const data_sets[] = {"light_directions.txt", "led_params.txt", NULL};
@@ -95,8 +95,8 @@ static bool is_ours(const char *line)
 
 enum { FIRST_LINE = 64 };
 
-/* Reads the first letters of the folder's lights.txt; false where there is no such file, or nothing in it. Asks for no
- * memory, without which a list of somebody's would be taken for none. */
+/* Reads the first letters of the folder's lights.txt; returns false if there is no such file, or it is empty. It
+ * allocates nothing, so that lack of memory cannot hide a user's list. */
 static bool read_list(const char *folder, char line[FIRST_LINE])
 {
     char path[PATH_MAX];

@@ -69,16 +69,16 @@ static const char help[] =
 
 typedef struct request {
     const char *mask, *output, *model_name;
-    char *weights, *flash_weights; /* files; the latter NULL for none */
+    char *weights, *flash_weights; /* files; the second is NULL for none */
     merlin_params params;
-    photo_share share; /* of 0: all */
+    photo_share share; /* with total 0: all */
     bool mesh, html, flash, resume, json, quiet, help;
     mesh_names meshes;
     merlin_model *model;
     const photo_list *photos;
-    bool *told; /* what was left aside of folders */
+    bool *told; /* reports skipped files of folders */
     stage_bar *bar;
-    const watch *watch; /* the bar's */
+    const watch *watch; /* progress bar */
 } request;
 
 static status take_standard_input(const request *r, int count, char **photos)
@@ -129,10 +129,11 @@ static status parse(int *argc, char ***argv, request *r)
     return s != OK ? s : take_standard_input(r, *argc, *argv);
 }
 
-/* What the report of a photograph's folder cannot know yet, in seconds. */
+/* Times that the report in a photograph's folder cannot contain yet, in seconds. */
 typedef struct lap_times {
-    double start, model, compile; /* of the program: loading it, its weights, its network; the first photograph alone */
-    double read, mask;            /* the first photograph's: the wait for both after all this, and 0 */
+    double start, model,
+        compile;       /* of the program: loading it, its weights, its network; only for the first photograph */
+    double read, mask; /* for the first photograph: waiting for both after all this, and 0 */
     double write, total;
 } lap_times;
 
@@ -161,7 +162,7 @@ static status print_json(const request *r, const photo_job *job, const merlin_ma
 
 enum { LIT_BY = MERLIN_LIGHT_WORDS + 96 };
 
-/* Writes words for the light that a model of any light sees, or for the other of two models that the maps are by. */
+/* Describes the light that a model of any light estimates, or which of two models made the maps. */
 static const char *lit_by(const request *r, const merlin_maps *maps, char words[LIT_BY])
 {
     char light[MERLIN_LIGHT_WORDS];
@@ -193,7 +194,7 @@ static status announce(const request *r, const photo_job *job, const merlin_maps
     return s;
 }
 
-/* Seconds since *clock, which moves on to now. */
+/* Returns the seconds since *clock, which is set to now. */
 static double lap(double *clock)
 {
     double now = clock_seconds(), passed = now - *clock;
@@ -201,7 +202,7 @@ static double lap(double *clock)
     return passed;
 }
 
-/* What is written beside the maps. */
+/* Files to write besides the maps. */
 typedef struct more_work {
     const request *request;
     const photo_job *job;
@@ -243,7 +244,7 @@ static status write_more(const more_work *w, const merlin_maps *maps, maps_stagi
     return s == OK && cli_interrupted() ? fail(MERLIN_STOPPED, "stopped") : s;
 }
 
-/* Writes the maps and what is written beside them: all of it or nothing. last: no photograph follows. */
+/* Writes the maps and the other files: all or none. last: no photograph follows. */
 static status write_files(const more_work *w, const merlin_maps *maps, bool last, staged_files *written)
 {
     const request *r = w->request;
@@ -263,7 +264,7 @@ static status write_files(const more_work *w, const merlin_maps *maps, bool last
     return s;
 }
 
-/* Takes the photograph, which is in memory and empty afterwards, to files. */
+/* Processes a photograph in memory, which is empty afterwards, to files. */
 static status take_apart(const request *r, const photo_job *job, photo_taken *taken, lap_times *laps)
 {
     double began = clock_seconds(), clock = began;
@@ -299,7 +300,7 @@ static status estimate_one(const request *r, const photo_job *job)
     return s == OK ? take_apart(r, job, &taken, &laps) : s;
 }
 
-/* Reads the first photograph, and finds its object, while the weights are read and the network made ready. */
+/* Reads the first photograph, and finds its object, while the weights are read and the network is prepared. */
 static status estimate_first(request *r, const photo_job *job, bool *ready, bool *broken)
 {
     photo_taken taken;
@@ -317,13 +318,13 @@ static status estimate_first(request *r, const photo_job *job, bool *ready, bool
     if (opened != OK) snprintf(words, sizeof words, "%s", status_message());
     s = photo_finish(&first, &taken);
     laps.read = lap(&now);
-    taken.object.seconds = 0; /* they passed beside the others */
+    taken.object.seconds = 0; /* they ran in parallel */
     if (opened == OK) return s == OK ? take_apart(r, job, &taken, &laps) : s;
     photo_taken_free(&taken);
     return fail(opened, "%s", words);
 }
 
-/* What photograph i is of all of them; its stages follow, which its size is not known for yet. */
+/* Sets photograph i's share of the whole; its stages follow when its size is known. */
 static void begin_photo(const request *r, const photo_list *photos, size_t i, double *done, double all)
 {
     double cost = expect_photo(photos->at[i].photo);
@@ -333,7 +334,7 @@ static void begin_photo(const request *r, const photo_list *photos, size_t i, do
     *done += cost;
 }
 
-/* Goes on after a photograph that fails, but not without weights. */
+/* Continues after a photograph that fails, but not without weights. */
 static int estimate_all(request *r, const photo_list *photos)
 {
     int code = 0;
@@ -359,7 +360,7 @@ static int estimate_all(request *r, const photo_list *photos)
     return code;
 }
 
-/* What others do, and what is done. */
+/* Removes photographs of other shares, and those that are done. */
 static void leave_out(const request *r, photo_list *photos)
 {
     if (r->share.of) photo_list_share(photos, &r->share);

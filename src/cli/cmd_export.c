@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* merlin export: maps as other programs read them. */
+/* merlin export: writes maps for other programs. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

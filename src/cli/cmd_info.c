@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* merlin info: what is in a weights file. */
+/* merlin info: shows the content of a weights file. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -56,8 +56,8 @@ static void print_text(const merlin_weights *info, bool tensors)
     }
 }
 
-/* Numbers and objects as such where the whole text is JSON of them, else as text; so are all notes, for a commit may
- * look like a number. */
+/* Adds numbers and objects as such if the whole text is JSON of them, else text, as notes always are: a commit may look
+ * like a number. */
 static void add_text(cJSON *o, const char *key, const char *text)
 {
     errno = 0;

@@ -118,7 +118,7 @@ static status announce(const request *r, const serve *server)
     return fflush(stdout) == 0 ? s : fail(MERLIN_CANNOT_WRITE, "cannot write to standard output");
 }
 
-/* Makes the network ready before the first photograph asks for it. */
+/* Prepares the network before the first photograph arrives. */
 static status open_models(const request *r, merlin_model **model)
 {
     char *weights = NULL, *flash = NULL;

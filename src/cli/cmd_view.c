@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* merlin view: maps as a page that a browser opens and lights. */
+/* merlin view: writes maps as a page that a browser opens and relights. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -72,7 +72,7 @@ static status check_input(const request *r)
                 r->input, r->input);
 }
 
-/* ---- what is said of it ---- */
+/* ---- report ---- */
 
 static status print_json(const request *r, const char *folder, const staged_files *written, const warnings *doubts,
                          double seconds)
@@ -114,7 +114,7 @@ static status write_page(const request *r, const merlin_maps *maps, staging *t, 
     return s == OK && cli_interrupted() ? fail(MERLIN_STOPPED, "stopped") : s;
 }
 
-/* file: the page's name in the folder. */
+/* Writes the page; file: its name in the folder. */
 static status view(const request *r, const char *folder, const char *file)
 {
     const double began = clock_seconds(), pixels = expect_pixels(r->input);

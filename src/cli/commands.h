@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The commands of merlin: each takes what follows its name and returns the exit status (command/cli.h). */
+/* The commands of merlin: each gets the arguments after its name and returns the exit status (command/cli.h). */
 #ifndef MERLIN_CLI_COMMANDS_H
 #define MERLIN_CLI_COMMANDS_H
 

@@ -7,7 +7,7 @@
 #include "base/file.h"
 
 static const double MILLION = 1e6;
-/* Of any photograph, and of a million pixels more. */
+/* Seconds for any photograph, and for each million pixels. */
 static const double FIXED = 0.4, BY_MILLION = 0.3;
 
 static double bytes_of(const char *path)
@@ -16,7 +16,7 @@ static double bytes_of(const char *path)
     return path && stat(path, &about) == 0 ? (double)about.st_size : 0;
 }
 
-/* A JPEG has less than half a byte a pixel, a PNG two; maps.exr two or three. */
+/* Estimates from the file's size: a JPEG has less than half a byte per pixel, a PNG two; maps.exr two or three. */
 double expect_pixels(const char *path)
 {
     if (!file_is_folder(path)) return bytes_of(path);

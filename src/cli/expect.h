@@ -1,34 +1,34 @@
 /* SPDX-License-Identifier: MIT */
-/* What long work costs: seconds that it took two processors. Only how the parts compare is of use, which is about the
- * same on other machines. */
+/* Expected cost of long work in seconds on two processors. Only ratios matter, which are about the same on other
+ * machines. */
 #ifndef MERLIN_CLI_EXPECT_H
 #define MERLIN_CLI_EXPECT_H
 
 #include "cli/stage_bar.h"
 
-/* How many pixels a photograph that is not read yet may have, or a folder of maps, by the file's size; 0 of what cannot
- * be looked at. */
+/* Returns the probable number of pixels of a photograph or a folder of maps by the file's size; 0 if it cannot be
+ * accessed. */
 double expect_pixels(const char *path);
-/* Of such a photograph. */
+/* Returns the cost of such a photograph. */
 double expect_photo(const char *path);
 
-/* Adds the stages of a photograph of so many pixels behind the `count` that are there, and returns how many there are
- * then: "reading", "estimating" and "refining". */
+/* Appends the stages of a photograph of this size to `count` ones: "reading", "estimating" and "refining"; returns the
+ * new count. */
 size_t expect_estimate(double pixels, stage_cost *stages, size_t count);
 
-/* Likewise "reading" of so large maps. */
+/* Does the same for "reading" maps of this size. */
 size_t expect_maps(double pixels, stage_cost *stages, size_t count);
 
 typedef struct expect_relight {
-    double pixels;           /* of a picture of the photograph's size, */
-    double pictures, frames; /* and how many of these and of an orbit there are */
+    double pixels;           /* of a picture of the photograph's size */
+    double pictures, frames; /* numbers of these and of an orbit's frames */
     bool environment;
 } expect_relight;
 
-/* Likewise "preparing", "relighting", "going round" and "animating". */
+/* Does the same for "preparing", "relighting", "going round" and "animating". */
 size_t expect_relit(const expect_relight *e, stage_cost *stages, size_t count);
 
-/* Seconds for writing the maps of so many pixels. */
+/* Returns the seconds for writing maps of this size. */
 double expect_maps_written(double pixels, bool mesh);
 
 #endif

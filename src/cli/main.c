@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* merlin: what is done with photographs. */
+/* merlin: the program for photographs. */
 #include "cli/commands.h"
 #include "command/program.h"
 

@@ -23,8 +23,8 @@ bool mesh_is_name(const char *word)
     return file_ends_in_any(word, endings);
 }
 
-/* The texture of an OBJ is a picture of the mesh's name: it must not take a map's place, nor lie among the pictures
- * that are solved, where it would replace one of them or be one more the next time. */
+/* Checks the texture of an OBJ, a picture with the mesh's name: it must not replace a map, nor be in the folder of
+ * pictures to solve, where it would replace one of them or be one more the next time. */
 static status check_texture(const mesh_file *m, const char *folder)
 {
     const char *name = file_name_of(m->path), *input = m->inputs[0];

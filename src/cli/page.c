@@ -6,12 +6,11 @@
 
 #include "base/file.h"
 
-/* A photograph's or a folder's own name without its ending: "cup" of photos/cup.jpg and of photos/cup.merlin;
- * malloc'ed.
- */
+/* Returns the name of a photograph or folder without its ending: "cup" for photos/cup.jpg and photos/cup.merlin;
+ * malloc'ed. */
 static char *name_of(const char *path)
 {
-    char *whole = realpath(path, NULL); /* of "." and "cup/", too; NULL of standard input */
+    char *whole = realpath(path, NULL); /* also for "." and "cup/"; NULL for standard input */
     char *name = strdup(file_name_of(whole ? whole : path));
     free(whole);
     char *ending = name ? strrchr(name, '.') : NULL;

@@ -7,21 +7,21 @@
 #include "base/warnings.h"
 #include "merlin/view.h"
 
-/* What a page is called that nobody has named. */
+/* Default name of a page. */
 #define PAGE_FILE "viewer.html"
 
-/* A page's maps: of which photograph or folder they are, for its name, and where they lie. */
+/* Source of a page's maps: the photograph or folder, for its title, and the path of the maps. */
 typedef struct page_source {
     const char *input, *folder;
-    int side; /* as of merlin_view_params */
+    int side; /* as in merlin_view_params */
 } page_source;
 
 status page_write(const merlin_maps *maps, const page_source *of, const char *path);
 
-/* Seconds that this costs for maps of so many pixels, beside what expect.h has. */
+/* Returns the seconds for a page of maps of this size, in addition to those of expect.h. */
 double page_cost(double pixels);
 
-/* Adds a word where the square around the object, of so many pixels a side, has more than the page. */
+/* Adds a warning if the square around the object, of this many pixels a side, is larger than the page. */
 void page_doubt(int square, int side, warnings *doubts);
 
 #endif

@@ -9,8 +9,9 @@
 
 #include "command/cli.h"
 
-/* Seconds. What is done in less than LONG has no bar, nor what is all but done after it; work of which nothing was
- * heard gets it a little earlier, so that a terminal is not silent for long. The first moments tell little. */
+/* Times in seconds. Work shorter than LONG has no bar, nor has work nearly finished then; without any report of
+ * progress the bar appears slightly earlier, so that a terminal is not silent for long. Estimates from the first
+ * moments are unreliable. */
 static const double LONG = 2, UNHEARD = 1.5, MOMENTS = 0.5;
 enum { TICK_NANOSECONDS = 200000000, SECOND_NANOSECONDS = 1000000000 };
 
@@ -34,7 +35,7 @@ static void draw(stage_bar *b)
     double now = clock_seconds(), left = pace_left(&b->pace, now);
     if (!b->label || b->hidden || !is_long(b, now - b->began, left)) return;
     char time[PROGRESS_TIME] = "?", words[96];
-    if (left >= 0) progress_time(fmax(left, 1), time); /* what goes on is not at its end */
+    if (left >= 0) progress_time(fmax(left, 1), time); /* running work never shows zero */
     snprintf(words, sizeof words, "%3.0f %%  %s%s left", floor(100 * b->pace.share), b->item, time);
     progress_draw(b->label, b->pace.share, words);
     b->drawn = true;
@@ -62,7 +63,7 @@ static void *tick(void *bar)
 
 /* ---- what is done ---- */
 
-/* Returns the whole's share where a stage's is done; stages that are not planned are where the bar stands. */
+/* Returns the share of the whole for a share of a stage; unplanned stages do not move the bar. */
 static double whole_share(const stage_bar *b, const char *stage, float share)
 {
     double done = -1, all = 0;
@@ -108,7 +109,7 @@ void stage_bar_span(stage_bar *b, double from, double to, size_t number, size_t 
 
 /* ---- from begin to end ---- */
 
-/* Without memory or a thread for it there is no bar, and all else goes on. */
+/* Starts the ticker; without memory or a thread there is no bar, and the work continues. */
 static bool start(stage_bar *b)
 {
     pthread_condattr_t monotonic;

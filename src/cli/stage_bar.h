@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* One bar for all of a command's long work, with the time left: on a terminal's standard error alone, drawn once the
- * work lasts, and gone when it ends, fails or is interrupted.
+/* One bar for all of a command's long work, with the remaining time: only on a terminal's standard error, drawn if the
+ * work takes long, and removed when it ends, fails or is interrupted.
  *
  *     stage_bar bar;
  *     stage_bar_begin(&bar, quiet);
@@ -16,9 +16,9 @@
 #include "base/progress.h"
 #include "base/watch.h"
 
-/* What a stage costs beside the others, in any unit. */
+/* Cost of a stage relative to the others, in any unit. */
 typedef struct stage_cost {
-    const char *name; /* as the watch is told it: a literal */
+    const char *name; /* as the watch gets it: a literal */
     double cost;
 } stage_cost;
 
@@ -27,11 +27,11 @@ enum { STAGE_BAR_MOST = 8 };
 typedef struct stage_bar {
     pthread_mutex_t lock;
     pthread_cond_t ended;
-    pthread_t ticker; /* draws while nothing is told */
+    pthread_t ticker; /* draws while nothing is reported */
     bool seen, ticking, ending;
     stage_cost stages[STAGE_BAR_MOST];
     size_t count;
-    double from, to; /* of the whole: the plan's */
+    double from, to; /* of the whole, for the plan */
     char item[32];
     const char *label;
     double began;
@@ -41,14 +41,13 @@ typedef struct stage_bar {
 
 void stage_bar_begin(stage_bar *b, bool quiet);
 void stage_bar_end(stage_bar *b);
-/* For all of the work, or for the span that follows. Stages may be left out, and may come again: a bar does not go
- * back. */
+/* Plans all of the work, or the span that follows. Stages may be missing, and may repeat: a bar does not go back. */
 void stage_bar_plan(stage_bar *b, const stage_cost *stages, size_t count);
-/* What follows is this part of the whole, 0 <= from <= to <= 1: item number (from 1) of count. */
+/* Makes the following work this part of the whole, 0 <= from <= to <= 1: item number (from 1) of count. */
 void stage_bar_span(stage_bar *b, double from, double to, size_t number, size_t count);
-/* Takes the bar away until something is told, so that other lines can be printed. */
+/* Removes the bar until the next report, so that other lines can be printed. */
 void stage_bar_hide(stage_bar *b);
-/* Tells the bar, and stops when the command is interrupted. */
+/* Returns a watch that reports to the bar, and stops when the command is interrupted. */
 watch stage_bar_watch(stage_bar *b);
 
 #endif

@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: MIT */
-/* Files that a command is given or is to write, looked at before anything that takes time. */
+/* Checks files that a command reads or will write, before long work. */
 #ifndef MERLIN_COMMAND_CHECK_FILES_H
 #define MERLIN_COMMAND_CHECK_FILES_H
 
 #include "base/status.h"
 
-/* MERLIN_BAD_INPUT where there is no file or folder of that name: "there is no mesh x.obj". path may be NULL: none was
- * given. */
+/* Fails with MERLIN_BAD_INPUT if there is no file or folder of that name: "there is no mesh x.obj". path may be NULL:
+ * none was given. */
 status check_named(const char *what, const char *path);
-/* MERLIN_BAD_INPUT where there is no photograph or no mask of that name; mask may be NULL. */
+/* Fails with MERLIN_BAD_INPUT if there is no photograph or no mask of that name; mask may be NULL. */
 status check_photo_and_mask(const char *photo, const char *mask);
-/* MERLIN_CANNOT_WRITE where a folder cannot be written into; it is made for the trial, and removed again. */
+/* Fails with MERLIN_CANNOT_WRITE if a folder cannot be written to; a missing one is created for the test, and removed
+ * again. */
 status check_output(const char *folder);
 
 #endif

@@ -83,17 +83,17 @@ static void note_interrupt(int signal_number)
 
 void cli_catch_interrupts(void)
 {
-    /* the second signal ends the program at once: whoever presses Ctrl-C twice means it */
+    /* a second signal ends the program at once, for users who press Ctrl-C twice */
     struct sigaction action = {.sa_handler = note_interrupt, .sa_flags = (int)SA_RESETHAND};
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
-    /* a terminal that is closed, of which shell and system may both tell; but nohup has said to go on */
+    /* a closed terminal, which shell and system may both signal; nohup has it ignored */
     struct sigaction hangup;
     sigaction(SIGHUP, NULL, &hangup);
     action.sa_flags = 0;
     if (hangup.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, NULL);
-    /* a file that may not grow is then a failed write, which says what happened */
+    /* a file that may not grow then causes a failed write with a message */
     signal(SIGXFSZ, SIG_IGN);
 }
 

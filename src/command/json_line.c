@@ -19,7 +19,7 @@ status json_report_print(char *text)
 {
     if (!text) return fail(MERLIN_NO_MEMORY, "no memory for the report");
     puts(text);
-    fflush(stdout); /* whoever reads a batch's lines has each when its work is done */
+    fflush(stdout); /* so that readers of a batch get each line when its work is done */
     free(text);
     return OK;
 }

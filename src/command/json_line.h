@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* What commands print with --json: one line of valid JSON, whatever bytes a file's name has.
+/* The output of --json: one line of valid JSON, whatever bytes a file's name has.
  *
  *     cJSON *report = report_begin(&doubts);
  *     json_put_text(report, "input", path);
  *     json_line_files(report, folder, &written);
  *     json_line_print(report);
  *
- * Whatever the command, "input" is what it was given, "output" the folder that it wrote, "files" the paths of all
- * files that it wrote, ready to be opened, and "bytes" the sum of their sizes. */
+ * In every command "input" is its input, "output" the folder that it wrote, "files" the paths of all files that it
+ * wrote, usable as they are, and "bytes" the sum of their sizes. */
 #ifndef MERLIN_COMMAND_JSON_LINE_H
 #define MERLIN_COMMAND_JSON_LINE_H
 
@@ -15,7 +15,7 @@
 #include "base/status.h"
 #include <cJSON.h>
 
-/* A report's own text, of several lines, which is freed; NULL: memory ran out. */
+/* Prints a report's own text, which has several lines and is freed; NULL: memory ran out. */
 status json_report_print(char *text);
 
 /* Adds "output", "files" and "bytes". */

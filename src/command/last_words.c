@@ -13,20 +13,21 @@
 #include "base/memory.h"
 #include "base/messages.h"
 
-/* A stack of OpenMP's or GLib's threads, the largest thing that they ask for by themselves, with room to spare. */
+/* Size of a stack of OpenMP's or GLib's threads, their largest own allocation, with a margin. */
 static const size_t little = (size_t)32 << 20;
 
 static int descriptor;
 static char line[128];
 
-/* GLib, C++ and OpenMP end by an abort or a trap; a crash is only theirs while they are called. */
+/* Tells whether a signal means lack of memory: GLib, C++ and OpenMP end by an abort or a trap; a crash counts only
+ * while they are called. */
 static bool is_lack(int number)
 {
     if (number == SIGSEGV || number == SIGBUS) return fragile_is_here();
     return fragile_is_anywhere() || !memory_is_left(little);
 }
 
-/* Calls nothing that takes a lock or memory: the thread may hold any lock. */
+/* Ends the program without functions that take a lock or allocate, as the thread may hold any lock. */
 static void end_by(int number)
 {
     signal(number, SIG_DFL);
@@ -35,7 +36,7 @@ static void end_by(int number)
         return;
     }
     leftovers_remove_own();
-    if (write(descriptor, line, strlen(line)) < 0) { /* nobody hears it */
+    if (write(descriptor, line, strlen(line)) < 0) { /* nobody can read it */
     }
     _exit(1);
 }

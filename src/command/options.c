@@ -25,13 +25,13 @@ static status take_threads(const char *text, void *into)
     return OK;
 }
 
-/* Every command has these. */
+/* Options of every command. */
 static const cli_option common[] = {
     {"threads", 't', .take = take_threads},
     {0},
 };
 
-/* Puts a command's own and the common ones into a table of CLI_MOST_OPTIONS rows and an empty one. */
+/* Joins a command's own and the common ones in a table of CLI_MOST_OPTIONS rows and an empty one. */
 static void join(const cli_option *own, cli_option *all)
 {
     size_t n = 0;
@@ -51,7 +51,8 @@ static int arguments_of(const cli_option *o)
     return o->is_value ? optional_argument : o->flag ? no_argument : required_argument;
 }
 
-/* Letters that take values are followed by a colon; the one in front has a missing value told from a wrong option. */
+/* Makes getopt_long's tables. Letters with values are followed by a colon; a colon in front distinguishes a missing
+ * value from an unknown option. */
 static void describe(const cli_option *options, struct option *longs, char *letters)
 {
     size_t n = 0;
@@ -75,7 +76,7 @@ static const cli_option *find(const cli_option *options, int value)
     return options;
 }
 
-/* "--m" may be short for several. */
+/* Tells whether an abbreviation such as "--m" fits several options. */
 static bool is_ambiguous(const cli_option *options, const char *given)
 {
     size_t length = strcspn(given, "="), matches = 0;
@@ -95,7 +96,8 @@ static status refuse_unknown(const cli_option *options, const char *given)
                  : fail(MERLIN_WRONG_USE, "unknown option %s", given);
 }
 
-/* What getopt_long did not take, value being its answer. A letter it names itself; a long option it has just passed. */
+/* Reports what getopt_long did not accept, given its result. It returns a letter; a long option is the argument before.
+ */
 static status refuse(const cli_option *options, int value, char *const *argv)
 {
     char letter[] = {'-', (char)optopt, 0};
@@ -126,7 +128,7 @@ static status take_number(const cli_option *o, const char *value)
     return s;
 }
 
-/* Whoever asks for one file would find a folder of that name. */
+/* Takes a folder; a picture's name is refused, as users who expect one file would get a folder of that name. */
 static status take_folder(const cli_option *o, const char *value)
 {
     static const char *const pictures[] = {".png",  ".jpg",  ".jpeg", ".exr", ".tif",
@@ -143,7 +145,7 @@ static status take_folder(const cli_option *o, const char *value)
     return OK;
 }
 
-/* Before the work, not after it. */
+/* Takes a picture's name and checks it before the work. */
 static status take_picture(const cli_option *o, const char *value)
 {
     if (!file_ends_in(value, ".png"))
@@ -155,7 +157,7 @@ static status take_picture(const cli_option *o, const char *value)
 static status take(const cli_option *o, const char *value)
 {
     if (o->take && value) return o->take(value, o->into);
-    if (o->folder && value) return take_folder(o, value); /* getopt_long has refused it without */
+    if (o->folder && value) return take_folder(o, value); /* getopt_long has refused a missing value */
     if (o->picture && value) return take_picture(o, value);
     if (o->flag)
         *o->flag = true;
@@ -166,7 +168,7 @@ static status take(const cli_option *o, const char *value)
     return OK;
 }
 
-/* The value that getopt_long has found, or the next word, which it leaves aside where a value may be missing. */
+/* Returns the value that getopt_long has found or, if a value may be missing, the next word, which it skips. */
 static const char *value_of(const cli_option *o, int argc, char *const *argv)
 {
     bool next = o->is_value && !optarg && optind < argc && o->is_value(argv[optind]);
@@ -187,7 +189,8 @@ status cli_read_options(int *argc, char ***argv, const cli_option *own)
         if (value == ':' || value == '?') return refuse(options, value, *argv);
         const cli_option *option = find(options, value);
         const char *given = value_of(option, *argc, *argv);
-        if (given && !*given) return fail(MERLIN_WRONG_USE, "--%s wants a value", option->name); /* "$UNSET" */
+        if (given && !*given)
+            return fail(MERLIN_WRONG_USE, "--%s wants a value", option->name); /* for example "$UNSET" */
         bool *before = &met[option - options];
         if (*before && !option->many && !option->flag)
             return fail(MERLIN_WRONG_USE, "--%s is given twice", option->name);

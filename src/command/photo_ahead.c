@@ -14,7 +14,7 @@ void photo_taken_free(photo_taken *taken)
     merlin_object_free(&taken->object);
 }
 
-/* mask: the job's, else alpha; without data if neither. */
+/* Reads both. mask: the job's, else alpha; without data if there is neither. */
 static status read_both(const photo_job *job, merlin_image *photo, merlin_image *mask)
 {
     status s = merlin_image_read(job->photo, photo, job->mask ? NULL : mask);

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* A photograph read, and its object found, by a thread of its own while something else is done
+/* Reads a photograph, and finds its object, in a separate thread while other work is done
  * (docs/notes/estimate_time.md).
  *
  *     photo_ahead first;
  *     photo_begin(&first, &job);
  *     ... open the model ...
- *     status s = photo_finish(&first, &taken);
- */
+ *     status s = photo_finish(&first, &taken); */
 #ifndef MERLIN_COMMAND_PHOTO_AHEAD_H
 #define MERLIN_COMMAND_PHOTO_AHEAD_H
 
@@ -16,7 +15,7 @@
 #include "command/photos.h"
 #include "merlin/estimate.h"
 
-/* A photograph in memory, its object, and what is known of how it was taken. */
+/* A photograph in memory, its object, and facts about how it was taken. */
 typedef struct photo_taken {
     merlin_image photo;
     merlin_object object;
@@ -31,22 +30,22 @@ typedef struct photo_ahead {
     pthread_t thread;
     photo_taken taken;
     status result;
-    char message[1024]; /* words are kept per thread, and this one goes away */
+    char message[1024]; /* copied, as messages are kept per thread, and this thread ends */
 } photo_ahead;
 
-/* Every begin needs its finish. */
+/* Starts the thread; each begin needs a finish. */
 void photo_begin(photo_ahead *ahead, const photo_job *job);
-/* Waits. It is the caller's then, empty after a failure. */
+/* Waits for the thread and gives the result to the caller; empty after a failure. */
 status photo_finish(photo_ahead *ahead, photo_taken *out);
 
-/* The same without a thread. */
+/* Does the same without a thread. */
 status photo_take(const photo_job *job, photo_taken *out);
 
-/* Estimates it by these params, but for their hint and shot; it is empty then. */
+/* Estimates the photograph with these params, except for their hint and shot; it is empty afterwards. */
 status photo_estimate(merlin_model *model, photo_taken *taken, const merlin_params *params, merlin_maps *maps);
 
-/* Does all of it; mask (its own then, or found) and params (the usual ones then) may be NULL. The message names the
- * photograph. */
+/* Reads, finds and estimates; mask (then its own, or found) and params (then the defaults) may be NULL. Messages name
+ * the photograph. */
 status photo_maps(merlin_model *model, const char *photo, const char *mask, const merlin_params *params,
                   merlin_maps *maps);
 

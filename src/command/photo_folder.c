@@ -12,7 +12,7 @@
 #include "image/read/mask_names.h"
 #include "image/read/read.h"
 
-/* Tells whether estimate and stereo write it beside maps.exr. */
+/* Tells whether estimate and stereo write a file of this name with maps.exr. */
 static bool is_result_name(const char *name)
 {
     static const char *const results[] = {"albedo.png",         "depth.png",     "error.png",   "maps.exr",
@@ -49,7 +49,8 @@ static status set_mask(photo_job *job, const char *mask)
 
 /* ---- a folder of photographs ---- */
 
-/* Beside maps.exr a program's results are left out, and a mask among them is no photograph's. */
+/* Reads a folder. If it has maps.exr, the program's results are excluded, and a mask among them belongs to no
+ * photograph. */
 static status read_folder(const char *folder, img_folder *f, bool *results)
 {
     status s = img_folder_read(folder, f);
@@ -65,7 +66,7 @@ static status read_folder(const char *folder, img_folder *f, bool *results)
     return OK;
 }
 
-/* An OBJ that --mesh named has brought it along. */
+/* Tells whether a picture is the texture of an OBJ named by --mesh. */
 static bool is_texture(const img_folder *f, const img_folder_file *file)
 {
     size_t stem = strlen(file->name) - strlen(".png");
@@ -96,7 +97,7 @@ static const char *reason_of(const img_folder *f, const img_folder_file *file, s
     return "a mask, but without its photograph";
 }
 
-/* first: the first of the folder's photographs in the list. */
+/* Lists skipped files; first: index of the folder's first photograph in the list. */
 static status list_skipped(const photo_list *list, size_t first, const img_folder *f, skipped_files *skipped)
 {
     status s = OK;
@@ -109,7 +110,7 @@ static status list_skipped(const photo_list *list, size_t first, const img_folde
     return s;
 }
 
-/* Length of the first part of a path below a folder, with its slash; 0 of what lies in the folder itself. */
+/* Returns the length of the first part of a path below a folder, with its slash; 0 for files in the folder itself. */
 static size_t below(const char *path, const char *folder, const char **name)
 {
     *name = path + strlen(folder);
@@ -118,7 +119,7 @@ static size_t below(const char *path, const char *folder, const char **name)
     return slash ? (size_t)(slash - *name) + 1 : 0;
 }
 
-/* Adds the folders in it that hold pictures, but not maps of earlier times or the masks. */
+/* Adds its subfolders that contain pictures, but not earlier maps or the masks. */
 static status list_folders(const char *folder, const char *masks, skipped_files *skipped)
 {
     static const char *const endings[] = {IMAGE_ENDINGS, NULL};
@@ -225,7 +226,7 @@ void photo_list_drop_masks(photo_list *list)
 
 /* ---- a folder of masks ---- */
 
-/* Photographs and masks may lie in one folder, where a photograph must not be taken for another one's mask. */
+/* Removes photographs from a folder that also contains masks, as a photograph must not become another one's mask. */
 static void leave_photos_out(const photo_list *list, const char *folder, img_folder *f)
 {
     for (size_t i = 0; i < list->count; i++) {

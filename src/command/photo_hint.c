@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Whole numbers of at least 0, by commas, and nothing else. */
+/* Reads non-negative integers separated by commas, and nothing else. */
 static bool read_numbers(const char *text, int *out, int count)
 {
     for (int i = 0; i < count; i++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Photographs to work on, each with its mask and the place where its results go. */
+/* Photographs to process, each with its mask and the place of its results. */
 #ifndef MERLIN_COMMAND_PHOTO_LIST_H
 #define MERLIN_COMMAND_PHOTO_LIST_H
 
@@ -10,8 +10,8 @@
 
 typedef struct photo_job {
     char *photo, *output;
-    char *mask;              /* NULL: alpha, or the object is searched for, */
-    const merlin_hint *hint; /* by this, or NULL; borrowed */
+    char *mask;              /* NULL: alpha, or the object is searched for */
+    const merlin_hint *hint; /* hint for the search, or NULL; borrowed */
 } photo_job;
 
 typedef struct photo_folder {

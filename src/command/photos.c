@@ -19,7 +19,7 @@
 
 /* ---- names ---- */
 
-/* Length of path without its last ending. */
+/* Returns the length of path without its last ending. */
 static size_t stem_length(const char *path)
 {
     const char *name = file_name_of(path), *dot = strrchr(name, '.');
@@ -99,8 +99,7 @@ static status choose_masks(photo_list *list, const char *mask, bool batch)
     return list->at[0].mask ? OK : no_memory();
 }
 
-/* Whether both name one place, however the folder that it is in is spelled; that is there as long as the photograph is.
- */
+/* Tells whether both name one place, however their folder is spelled; the folder exists if the photograph does. */
 static bool is_same_place(const char *one, const char *other)
 {
     if (strcmp(one, other) == 0) return true;
@@ -117,8 +116,7 @@ static int compare_last_names(const void *a, const void *b)
     return strcmp(file_name_of(a), file_name_of(b));
 }
 
-/* names: a tree of the last names that are taken; most are not, and hundred thousands are not looked through for each.
- */
+/* Tells whether a name is taken. names: a search tree, so that lists of hundred thousands of names are fast. */
 static bool is_taken(const photo_list *list, void *const *names, size_t before, const char *output)
 {
     if (!tfind(output, names, compare_last_names)) return false;
@@ -127,7 +125,7 @@ static bool is_taken(const photo_list *list, void *const *names, size_t before, 
     return false;
 }
 
-/* A folder name that no earlier photograph of the batch has: cup.png and cup.jpg may stand side by side. */
+/* Chooses a folder name that no earlier photograph of the batch has, as there may be cup.png and cup.jpg. */
 static status choose_output(photo_list *list, void **names, size_t i, const char *folder)
 {
     photo_job *job = &list->at[i];
@@ -158,7 +156,7 @@ static status choose_output(photo_list *list, void **names, size_t i, const char
 
 static void keep(void *name)
 {
-    (void)name; /* the list's */
+    (void)name; /* belongs to the list */
 }
 
 static status choose_outputs(photo_list *list, const char *folder)
@@ -171,7 +169,7 @@ static status choose_outputs(photo_list *list, const char *folder)
     return s;
 }
 
-/* Without a mask that was asked for it has its own. */
+/* Adds a photograph; without a requested mask its own is used. */
 static status add_photo(photo_list *list, const char *photo, const char *mask)
 {
     status s = photo_list_add(list, photo);
@@ -207,7 +205,7 @@ status photo_list_make(char *const *arguments, int count, const char *mask, cons
     return s;
 }
 
-/* Drops all that are not kept, by their number. */
+/* Removes photographs that are not kept, by their index. */
 static void keep_those(photo_list *list, bool (*kept)(const photo_job *job, size_t i, const void *context),
                        const void *context)
 {
@@ -232,7 +230,7 @@ void photo_list_share(photo_list *list, const photo_share *share)
     keep_those(list, is_of_share, share);
 }
 
-/* As make does: what is younger than its maps was changed since. */
+/* Tells whether a photograph or mask is newer than its maps, as make does. */
 static bool is_to_do(const photo_job *job, size_t i, const void *context)
 {
     struct stat photo, mask, report;
@@ -286,7 +284,7 @@ status photo_take_share(const char *text, void *into)
     return fail(MERLIN_WRONG_USE, "--share wants K/N, the K-th of N shares, such as 1/4, not '%s'", text);
 }
 
-/* NAME.safetensors where the program's own weights are; *path is NULL if there is none. */
+/* Finds NAME.safetensors among the program's own weights; *path is NULL if there is none. */
 static status find_shipped(const char *name, char **path)
 {
     static const char *const places[] = {"models", "../models", "../../models", "../share/merlin/models"};
@@ -311,7 +309,7 @@ status photo_find_model(const char *asked, char **path)
         if (strchr(asked, '/') && !file_exists(asked))
             return fail(MERLIN_BAD_INPUT, "%sthere is no weights file %s", by, asked);
     }
-    /* the folder of what merlin-env found may well be called so */
+    /* a folder of merlin-env's results may have this name */
     bool is_file =
         asked && (strchr(asked, '/') || strchr(asked, '.') || (file_exists(asked) && !file_is_folder(asked)));
     if (is_file) return (*path = strdup(asked)) ? OK : no_memory();

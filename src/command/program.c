@@ -39,7 +39,7 @@ static bool is_elsewhere(const program *p, const char *name)
     return false;
 }
 
-/* NULL if nothing is near. */
+/* Returns the most similar command; NULL if none is similar. */
 static const char *suggested(const program *p, const char *name)
 {
     enum { MOST = 16 };
@@ -50,7 +50,7 @@ static const char *suggested(const program *p, const char *name)
     return suggest(name, strlen(name), names, count);
 }
 
-/* Says it on one line, whatever is in the name. */
+/* Reports an unknown command on one line, whatever is in its name. */
 static int refuse_command(const program *p, const char *name)
 {
     const char *meant = suggested(p, name), *kind = name[0] == '-' ? "option" : "command";
@@ -66,21 +66,20 @@ static int refuse_command(const program *p, const char *name)
     return 2;
 }
 
-/* Output that went to a full disk or a closed pipe is a failure even if the command did not notice. */
+/* Returns failure if output went to a full disk or a closed pipe, even if the command did not notice. */
 static int finish(int code)
 {
     bool written = fflush(stdout) == 0 && !ferror(stdout);
     if (!written) fprintf(messages(), "%s: cannot write to standard output\n", messages_program());
     if (!written && code == 0) code = 1;
-    /* all files are closed, and what libraries would tidy up the system takes back anyway; but leaks are looked for
-     * behind a proper end */
+    /* all files are closed, and the system frees what libraries would; but leak checkers need a normal exit */
     if (MERLIN_LEAVES_AT_ONCE) _exit(code);
     return code;
 }
 
-/* Images up to some megapixels come from memory that was used before, by whatever thread: a fresh page costs more than
- * most of what is done with it. The first of that memory comes in large pages. Larger images go back to the system when
- * they are freed. */
+/* Reuses memory for images of up to some megapixels, in all threads, as new pages cost more than most operations on
+ * them. The first of that memory consists of large pages. Larger images are returned to the system when they are freed.
+ */
 static void reuse_memory(void)
 {
     enum { FIRST = 64 << 20 };
@@ -94,8 +93,8 @@ static void reuse_memory(void)
     mallopt(M_MMAP_THRESHOLD, 8 << 20);
 }
 
-/* Leaves OpenBLAS one thread, before it is loaded, which is when it asks: its matrices are too small for several to
- * gain from, and the other work has them all. */
+/* Limits OpenBLAS to one thread, before it is loaded and reads the variable: its matrices are too small for several,
+ * and other work uses them all. */
 static void one_thread_for_blas(void)
 {
     setenv("OPENBLAS_NUM_THREADS", "1", 0);
@@ -111,7 +110,7 @@ int program_run(const program *p, int argc, char **argv)
         print_help(p, messages());
         return 2;
     }
-    if (argc > 2 && strcmp(argv[1], "help") == 0) { /* merlin help eval photos is merlin-lab eval photos --help */
+    if (argc > 2 && strcmp(argv[1], "help") == 0) { /* merlin-lab help eval photos is merlin-lab eval photos --help */
         memmove(argv + 1, argv + 2, (size_t)(argc - 2) * sizeof *argv);
         argv[argc - 1] = "--help";
     }

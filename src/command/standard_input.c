@@ -9,7 +9,7 @@
 
 enum { MOST = 512 << 20 };
 
-static char kept[32]; /* the name of what was kept; empty: nothing */
+static char kept[32]; /* name of the stored input; empty: none */
 
 static status keep_block(int to, const char *block, size_t size)
 {

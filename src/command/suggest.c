@@ -7,10 +7,10 @@
 
 enum { LONGEST = 32 }; /* letters of a name */
 
-/* The distance of Damerau and Levenshtein in which no letter is moved twice ("optimal string alignment"). */
+/* Returns the distance of Damerau and Levenshtein in which no letter is moved twice ("optimal string alignment"). */
 static int slips(const char *a, size_t a_length, const char *b, size_t b_length)
 {
-    int row[3][LONGEST + 1]; /* the last three rows of the table: of a's first i letters */
+    int row[3][LONGEST + 1]; /* last three rows of the table: for a's first i letters */
     for (size_t j = 0; j <= b_length; j++)
         row[0][j] = (int)j;
     for (size_t i = 1; i <= a_length; i++) {

@@ -19,8 +19,8 @@
 #include "image/write/write.h"
 #include "merlin/export.h"
 
-/* The size of the surface whose horizon is followed, to which an estimate's shape adds nothing, and the largest one at
- * which occlusion is computed, which is smooth. */
+/* Size of the surface whose horizon is computed, as an estimate's shape has no finer detail, and the largest size at
+ * which occlusion, which is smooth, is computed. */
 enum { HORIZON_SIDE = 512, OCCLUSION_SIDE = 1024 };
 enum {
     USUAL_MAPS = MERLIN_EXPORT_ALBEDO | MERLIN_EXPORT_NORMAL | MERLIN_EXPORT_ROUGHNESS | MERLIN_EXPORT_OCCLUSION |
@@ -35,11 +35,11 @@ typedef struct export_job {
     unsigned wanted;
     bool normal_down;
     merlin_export_facts facts;
-    surface of;    /* the square, its maps continued beside the object once they are `filled` */
-    img occlusion; /* 1 channel; no data: not wanted */
+    surface of;    /* the square; `filled`: its maps are continued outside the object */
+    img occlusion; /* 1 channel; no data: not requested */
     img height;    /* 1 channel, in widths of the square; likewise */
     staging *files;
-    cJSON *list; /* of the files' names */
+    cJSON *list; /* names of the files */
 } export_job;
 
 static void job_free(export_job *j)
@@ -49,7 +49,7 @@ static void job_free(export_job *j)
     img_free(&j->height);
 }
 
-/* ---- what is not among the maps ---- */
+/* ---- computed maps ---- */
 
 static status compute_occlusion(const merlin_maps *maps, int side, img *out)
 {
@@ -223,7 +223,7 @@ static status write_facts(export_job *j)
     return s;
 }
 
-/* ---- all of it ---- */
+/* ---- the whole ---- */
 
 static status check(const merlin_export_params *p)
 {

@@ -15,7 +15,7 @@ static void print_image(FILE *f, const char *node, const char *type, const char 
     fputs("/>\n  </image>\n", f);
 }
 
-/* The index of refraction whose reflection along the normal is F0 (Fresnel). */
+/* Returns the index of refraction whose reflectance along the normal is F0 (Fresnel). */
 static double index_of_refraction(void)
 {
     double root = sqrt((double)BRDF_F0);

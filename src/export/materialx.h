@@ -6,8 +6,7 @@
 
 #include "base/status.h"
 
-/* Writes the material of a plane with albedo.png, normal.png and roughness.png, which lie beside the file, atomically.
- */
+/* Writes the material of a plane with albedo.png, normal.png and roughness.png next to the file, atomically. */
 status materialx_write(const char *path);
 
 #endif

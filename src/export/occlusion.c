@@ -7,9 +7,8 @@
 #include "base/parallel.h"
 #include "estimate/light/horizon.h"
 
-/* Directions about a normal, which stand for equal shares of the cosine: the points of a disc (Malley's method) on
- * Vogel's spiral. 64 differ from 1024 by 0.008 on a plane and
- * by 0.001 in a bowl (tests/export/test_occlusion.c). */
+/* Number of directions around a normal, each for an equal share of the cosine: points of a disc (Malley's method) on
+ * Vogel's spiral. 64 differ from 1024 by 0.008 on a plane and by 0.001 in a bowl (tests/export/test_occlusion.c). */
 enum { DIRECTIONS = 64 };
 static const float GOLDEN_ANGLE = 2.39996323f;
 

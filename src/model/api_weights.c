@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What is in a weights file (merlin/weights.h). */
+/* merlin/weights.h: the content of a weights file. */
 #include "merlin/weights.h"
 
 #include <stdio.h>

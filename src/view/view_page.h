@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The page without maps, made of web/ when it is built (cmake/page.awk): a line each, up to NULL. What is known of the
- * maps goes between the two. */
+/* The page without maps, made from web/ when it is built (cmake/page.awk): one string per line, up to NULL. The data of
+ * the maps are written between its two parts. */
 #ifndef MERLIN_VIEW_VIEW_PAGE_H
 #define MERLIN_VIEW_VIEW_PAGE_H
 

@@ -7,9 +7,9 @@
 
 #include "base/parallel.h"
 
-/* web/scene.js and web/shaders/surface.glsl know these. */
+/* Constants of the encoding, shared with web/scene.js and web/shaders/surface.glsl. */
 static const float MOST = 4095, NORMAL_STEPS = 4096, LEAST_ROUGHNESS = 0.03f, DEPTH_STEPS = 65535, COVER_STEPS = 255;
-/* Beyond it files hardly shrink, and take several times as long. */
+/* Compression level; beyond it files hardly shrink, and take several times as long. */
 enum { LEVEL = 9 };
 
 /* ---- ranges ---- */
@@ -74,7 +74,7 @@ static uint16_t code_surface(float value, const view_range *r)
     return value >= 0.5f;
 }
 
-/* One channel of a map; beside the mask, if there is one, all is 0. */
+/* One channel of a map, zero outside the mask if there is one. */
 typedef struct source {
     const char *name;
     const img *map, *mask;

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-/* Maps as planes of 16-bit whole numbers, compressed: what web/scene.js unpacks.
+/* Maps as planes of 16-bit integers, compressed, which web/scene.js decodes.
  *
  *     view_planes planes;
  *     status s = view_planes_make(&relighter, &ranges, &planes);
  *     ... planes.at[i].name, data, size ...
  *     view_planes_free(&planes);
  *
- * Steps are finer than what a pixel of a relit picture shows: albedo in 4096 steps of its root; normals' x and y in
- * steps of 1/4096, which is what a half float near 1 resolves; roughness in 4096 steps of its logarithm, for the
- * highlight's height follows its fourth power; depth in 65536 steps of its range. Each number is kept as its difference
- * from left + above - above left, the sign in its lowest bit; all upper bytes stand before all lower ones. */
+ * Steps are finer than what a pixel of a relit picture shows: albedo in 4096 steps of its square root; normals' x and y
+ * in steps of 1/4096, the resolution of a half float near 1; roughness in 4096 steps of its logarithm, as the
+ * highlight's height depends on its fourth power; depth in 65536 steps of its range. Each number is stored as its
+ * difference from left + above - above left, with the sign in its lowest bit; all upper bytes precede all lower ones.
+ */
 #ifndef MERLIN_VIEW_VIEW_PLANES_H
 #define MERLIN_VIEW_VIEW_PLANES_H
 
@@ -19,20 +20,20 @@
 #include "estimate/relight/relighter.h"
 
 typedef struct view_range {
-    float near, far; /* depths */
+    float near, far; /* range of depths */
 } view_range;
 
-/* What depths are told by. */
+/* Ranges of depth for the encoding. */
 typedef struct view_ranges {
-    view_range covered;  /* of the maps where anything is covered, */
-    view_range object;   /* where half or more is, */
-    view_range occluder; /* and of what casts shadows, all of it */
+    view_range covered;  /* of the maps' covered pixels */
+    view_range object;   /* of pixels with a coverage of half or more */
+    view_range occluder; /* of all of the occluder */
 } view_ranges;
 view_ranges view_ranges_of(const relighter *s);
 
 typedef struct view_plane {
     const char *name;
-    uint8_t *data; /* of zlib */
+    uint8_t *data; /* zlib data */
     size_t size;
 } view_plane;
 
@@ -42,7 +43,7 @@ typedef struct view_planes {
     size_t count;
 } view_planes;
 
-/* Of a relighter that casts shadows; one that is matte has no roughness. */
+/* Makes the planes of a relighter that casts shadows; a matte one has no roughness. */
 status view_planes_make(const relighter *s, const view_ranges *ranges, view_planes *out);
 void view_planes_free(view_planes *planes);
 

@@ -61,7 +61,7 @@ static void put_lamp(cJSON *list, const lamp *l, bool fixed)
     json_put_bool(o, "fixed", fixed);
 }
 
-/* The light that was found in the photograph, null where nothing is known. */
+/* Adds the light estimated from the photograph, null if nothing is known. */
 static void put_light(cJSON *root, const merlin_found_light *light)
 {
     found_lights found;
@@ -98,7 +98,7 @@ static void put_all(cJSON *root, const merlin_maps *maps, const merlin_view_para
     put_light(root, &maps->light);
 }
 
-/* The characters that would end the element in which the text stands, as JSON writes any. */
+/* Replaces the characters that would end the HTML element by escapes of JSON. */
 static char *without_tags(const char *text)
 {
     size_t longer = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* merlin_view_write: the page with its maps, into a file. */
+/* merlin_view_write: writes the page with its maps into a file. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,7 +14,7 @@
 #include "view/view_planes.h"
 #include "view/view_scene.h"
 
-/* What stands in the page's middle. */
+/* Data between the page's two parts. */
 typedef struct page {
     char *scene; /* JSON */
     view_planes planes;
@@ -49,7 +49,7 @@ static void print_base64(FILE *f, const uint8_t *data, size_t size)
     }
 }
 
-/* An element that a browser keeps as text and does not run. */
+/* Prints an element that a browser keeps as text and does not execute. */
 static void print_map(FILE *f, const char *name, const uint8_t *data, size_t size)
 {
     fprintf(f, "<script type=\"application/octet-stream\" id=\"map-%s\">", name);
@@ -68,9 +68,9 @@ static void print_page(FILE *f, const void *context)
     print_lines(f, view_page_tail);
 }
 
-/* ---- what is printed ---- */
+/* ---- data ---- */
 
-/* The square's photograph. */
+/* Encodes the square's photograph. */
 static status take_photo(const merlin_maps *maps, int side, page *p)
 {
     img part = {0}, shown = {0};
@@ -85,8 +85,7 @@ static status take_photo(const merlin_maps *maps, int side, page *p)
     return s;
 }
 
-/* The white by which lamps of power 1, wherever they stand on the frontal hemisphere, leave a captured surface below
- * 1. */
+/* Finds the white for which lamps of power 1, anywhere on the frontal hemisphere, leave a captured surface below 1. */
 static status meter(const relighter *s, float *white)
 {
     enum { AROUND = 8 };

@@ -38,7 +38,7 @@ static const char help[] =
     "The camera is at 0,0,0 and looks along -z, x right, y up; the object is near 0,0,-1; the crop around the object\n"
     "counts as a frame 60 degrees wide.\n\n";
 
-/* Apart, since compilers need not take texts of more than 4095 characters. */
+/* separate, since compilers need not accept strings of more than 4095 characters */
 static const char help_on_options[] =
     "      --light x,y,z    a lamp's place; may be given again, for another picture\n"
     "      --direction x,y,z\n"
@@ -115,7 +115,7 @@ typedef struct request {
     int orbit, frame;
     relight_dome dome;
     bool found, near, no_shadows, no_bounces, matte, json, quiet, help;
-    int captured; /* input is a capture's maps */
+    int captured; /* whether input is a capture's maps */
 } request;
 
 static status take_exposing(const char *text, void *into)
@@ -290,7 +290,7 @@ static status parse(int *argc, char ***argv, request *r)
     return check(r);
 }
 
-/* Checks the lamps of options and of a list alike. */
+/* Checks the lamps of options and of a list. */
 static status check_lamps(const request *r)
 {
     status s = OK;
@@ -308,7 +308,7 @@ static status read_lamps(request *r)
     return s == OK ? check_lamps(r) : s;
 }
 
-/* From a folder of estimate's or stereo's, or by estimating now. */
+/* Gets maps from a folder of estimate or stereo, or estimates them now. */
 static status get_maps(request *r, merlin_model *model, const watch *shown, merlin_maps *maps)
 {
     *maps = (merlin_maps){0};
@@ -317,7 +317,7 @@ static status get_maps(request *r, merlin_model *model, const watch *shown, merl
     return photo_maps(model, r->input, r->mask, &r->params, maps);
 }
 
-/* ---- what is said of it ---- */
+/* ---- report ---- */
 
 static void doubt_environment(const merlin_environment *e, warnings *doubts)
 {
@@ -338,7 +338,7 @@ static void doubt_darkness(const relight_result *result, warnings *doubts)
                  which);
 }
 
-/* Lists the doubts of the photograph first, if the maps are made of one now. */
+/* Lists the warnings about the photograph first, if the maps are estimated now. */
 static void find_doubts(const relight_job *job, const relight_result *result, warnings *doubts)
 {
     merlin_maps_warnings(job->maps, doubts);
@@ -416,7 +416,7 @@ static relight_job job_of(const request *r, const char *output)
     return job;
 }
 
-/* By the sizes of files, since the plan is made before they are read. */
+/* Plans the progress by the sizes of files, before they are read. */
 static void plan(const request *r, stage_bar *bar)
 {
     stage_cost stages[STAGE_BAR_MOST];

@@ -64,7 +64,7 @@ status lamp_take_direction(const char *text, void *into)
     return s == OK ? add(into, merlin_lamp_toward(v[0], v[1], v[2])) : s;
 }
 
-/* The style that an option behind the lamps so far changes. */
+/* Returns the style that an option at this position changes. */
 static lamp_style *style_here(lamp_options *lamps)
 {
     return lamps->count ? &lamps->style[lamps->count - 1] : &lamps->common;
@@ -76,7 +76,7 @@ static void restyle(lamp_options *lamps)
     if (lamps->count) lamps->at[last] = lamp_in_style(lamps->at[last], &lamps->style[last]);
 }
 
-/* Notes that an option was given, which it may be once for a lamp, and once for all that have none of their own. */
+/* Records that an option was given; it may be given once per lamp, and once for all lamps without their own. */
 static status mark(bool *given, const char *option)
 {
     if (*given) return fail(MERLIN_WRONG_USE, "%s is given twice for the same lamps", option);

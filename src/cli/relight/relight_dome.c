@@ -16,7 +16,7 @@ merlin_lamp relight_dome_lamp(const relight_job *job, int i)
 
 /* ---- lists ---- */
 
-/* The directions to distant lights, which is what an .lp file knows. */
+/* Prints the directions to distant lights, the only ones that an .lp file can contain. */
 static void print_lp(FILE *f, const void *context)
 {
     const relight_job *job = context;
@@ -43,7 +43,7 @@ static void print_places(FILE *f, const void *context)
 
 /* ---- an earlier dome in the same folder ---- */
 
-/* An earlier dome's list, whose lights these pictures of the same names would be believed to have. */
+/* Finds an earlier dome's list, whose lights would be assigned to these pictures of the same names. */
 static status look_for_directions(const char *folder, bool *has)
 {
     char *path = file_join(folder, "dome.lp");
@@ -57,7 +57,7 @@ static status look_for_directions(const char *folder, bool *has)
     return s == MERLIN_NO_MEMORY ? s : OK;
 }
 
-/* A picture of a dome, that this one does not replace. */
+/* Tells whether a file is a picture of an earlier dome that this one does not replace. */
 static bool is_left_over(const relight_job *job, const char *name)
 {
     if (!relight_is_numbered(name, "dome_")) return false;
@@ -91,7 +91,7 @@ status relight_dome_check(const relight_job *job)
     return s;
 }
 
-/* ---- all of it ---- */
+/* ---- the whole ---- */
 
 static status write_lists(const relight_work *w)
 {
@@ -104,7 +104,8 @@ static status write_lists(const relight_work *w)
     return file_print(staging_path(w->staging, "dome.lp", path), print_lp, job);
 }
 
-/* As WebP, which RTI tools do not take for a picture under a light, and merlin stereo takes for the mask. */
+/* Writes the mask as WebP, which RTI tools do not take for a picture under a light, and merlin stereo recognizes as the
+ * mask. */
 static status write_mask(const relight_work *w)
 {
     char path[PATH_MAX];

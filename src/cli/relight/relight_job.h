@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The job of merlin relight: the pictures that are asked for, and the ones that were made. */
+/* The job of merlin relight: the requested pictures, and the results. */
 #ifndef MERLIN_CLI_RELIGHT_RELIGHT_JOB_H
 #define MERLIN_CLI_RELIGHT_RELIGHT_JOB_H
 
@@ -13,56 +13,56 @@
 
 enum { RELIGHT_MOST_FRAMES = 240, RELIGHT_MOST_DOME = 999 };
 
-/* The brightness that pictures get. */
+/* Exposure of the pictures. */
 typedef enum relight_exposing {
-    RELIGHT_AS_SOURCE, /* as the photograph was exposed; as lamps of power 1 would have it at distance 1 */
-    RELIGHT_BY_LAMPS,  /* so that the brightest stays below white, were all lamps of power 1 and white */
-    RELIGHT_AUTO,      /* so that the brightest stays below white */
+    RELIGHT_AS_SOURCE, /* as the photograph was exposed; for a capture as for lamps of power 1 at distance 1 */
+    RELIGHT_BY_LAMPS,  /* the brightest value stays below white, as if all lamps had power 1 and were white */
+    RELIGHT_AUTO,      /* the brightest value stays below white */
 } relight_exposing;
 
 typedef struct relight_dome {
-    int count;  /* pictures under a dome of lights, of the photograph's size; 0: none */
-    bool lp;    /* and a list of the lights' directions for RTI viewers */
-    float near; /* how far from (0, 0, -1) the lamps stand; 0: far away */
+    int count;  /* number of pictures under a dome of lights, of the photograph's size; 0: none */
+    bool lp;    /* whether to write a list of the lights' directions for RTI viewers */
+    float near; /* distance of the lamps from (0, 0, -1); 0: distant */
 } relight_dome;
 
 typedef struct relight_job {
     merlin_model *model;
-    merlin_maps *maps;               /* but for the mask they are let go when nothing needs them any more */
+    merlin_maps *maps;               /* freed, except for the mask, when they are not needed any more */
     const char *output;              /* folder */
     const char *const *inputs;       /* as in staging_begin */
-    lamp_options lamps;              /* relit_000 …, of the photograph's size */
+    lamp_options lamps;              /* for relit_000 …, of the photograph's size */
     merlin_environment *environment; /* an orbit turns it; beside the lights, and alone where there are none; or NULL */
-    bool found;                      /* instead of lamps and environment the light that was found in the photograph */
-    float turn;                      /* degrees that it is turned about the vertical, as of merlin_relight_found */
+    bool found;                      /* use the light estimated from the photograph instead of lamps and environment */
+    float turn;                      /* rotation about the vertical in degrees, as for merlin_relight_found */
     merlin_relighting how;
     bool matte;
-    merlin_image_format format; /* of the photograph's size */
+    merlin_image_format format; /* of pictures of the photograph's size */
     relight_exposing exposing;
-    float ev; /* stops brighter than that */
+    float ev; /* additional stops */
     relight_dome dome;
-    int orbit; /* frames; 0: none. Under an environment that goes round, beside the first of the lights if any, or under
-                * the light that was found, which goes round; else a lamp does */
-    int frame; /* their side; 0: the crop's, at most 512 */
+    int orbit; /* number of frames; 0: none. A given environment rotates, with the first of the lights if any; so does
+                * the estimated light; otherwise a lamp moves around */
+    int frame; /* side of the frames; 0: the crop's, at most 512 */
     int (*stop)(void);
-    const watch *watch; /* told "preparing", "relighting", "going round" (of an orbit) and "animating" */
+    const watch *watch; /* receives "preparing", "relighting", "going round" (of an orbit) and "animating" */
 } relight_job;
 
-/* The outcome of it. */
+/* Results of the job. */
 typedef struct relight_result {
     staged_files files;
-    float ev;           /* stops by which the pictures are brighter than RELIGHT_AS_SOURCE has them */
-    double burnt_out;   /* largest share of the object's pixels, of all pictures, with a channel at white */
-    size_t pictures;    /* how many there are, */
-    size_t burnt;       /* and with RELIGHT_MUCH_BURNT_OUT or more */
-    size_t dark;        /* and in which the object is black */
-    size_t left;        /* numbered pictures of an earlier run that are still among them, */
-    char left_name[16]; /* and what the first is called */
+    float ev;           /* stops by which the pictures are brighter than with RELIGHT_AS_SOURCE */
+    double burnt_out;   /* largest share of the object's pixels with a channel at white, over all pictures */
+    size_t pictures;    /* number of pictures */
+    size_t burnt;       /* number with RELIGHT_MUCH_BURNT_OUT or more */
+    size_t dark;        /* number in which the object is black */
+    size_t left;        /* number of numbered pictures of an earlier run among them */
+    char left_name[16]; /* name of the first of these */
 } relight_result;
 
 #define RELIGHT_MUCH_BURNT_OUT 0.05
 
-/* Returns how many pictures of the photograph's size the job takes. */
+/* Returns the number of pictures of the photograph's size. */
 size_t relight_count_whole(const relight_job *job);
 
 #endif

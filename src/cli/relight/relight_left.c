@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Pictures that an earlier run left beside these: they are not removed, for this run has not made them, but told of. */
+/* Pictures of an earlier run in the same folder: they are not removed, since this run did not write them, but reported.
+ */
 #include <ctype.h>
 #include <stdio.h>
 #include <string.h>
@@ -28,7 +29,7 @@ void relight_find_left(const relight_job *job, relight_result *result)
     static const char *const endings[] = {".png", ".jpg", NULL};
     char **paths;
     size_t count;
-    if (file_list(job->output, endings, &paths, &count) != OK) return; /* the pictures are there all the same */
+    if (file_list(job->output, endings, &paths, &count) != OK) return; /* the pictures are written in any case */
     for (size_t i = 0; i < count; i++) {
         const char *name = file_name_of(paths[i]);
         const bool beside = (relight_count_whole(job) > 0 && relight_is_numbered(name, "relit_")) ||

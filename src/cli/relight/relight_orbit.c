@@ -6,7 +6,7 @@
 #include "merlin/merlin.h"
 
 enum { ORBIT_MILLISECONDS = 3000 };
-/* Viewers show frames of 10 ms and less, which a GIF counts by, for a tenth of a second. */
+/* Shortest frame, as viewers show frames of 10 ms, a GIF's unit, and less for a tenth of a second. */
 enum { LEAST_MILLISECONDS = 20 };
 
 merlin_lamp relight_orbit_lamp(const relight_job *job, int i)
@@ -29,7 +29,7 @@ static status write_animations(const relight_work *w, const merlin_animation *fr
     return s;
 }
 
-/* Renders frame i. Surroundings turn a step further for each, and the user's lamps stay where they are then. */
+/* Renders frame i. An environment rotates by a further step in each, while the user's lamps stay. */
 static status render_frame(relight_work *w, int i, relight_sheet *some, merlin_image *frame)
 {
     const relight_job *job = w->job;

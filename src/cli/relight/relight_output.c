@@ -13,7 +13,7 @@ enum { USUAL_FRAME = 512 };
 
 /* ---- single lights, in the photograph's frame ---- */
 
-/* Writes relit.png: one light's picture itself, or a sheet of several lights' pictures. */
+/* Writes relit.png: a single light's picture, or a sheet of several lights' pictures. */
 static status write_lights(relight_work *w)
 {
     const relight_job *job = w->job;
@@ -39,7 +39,7 @@ static size_t count_lamps(const relight_job *job)
     return job->lamps.count + (size_t)job->dome.count + (relight_surroundings_turn(job) ? 0 : (size_t)job->orbit);
 }
 
-/* All lamps of all pictures: one exposure for them, so that they can be compared. */
+/* Collects all lamps of all pictures, which get one exposure so that they can be compared. */
 static void gather(const relight_job *job, merlin_lamp *all)
 {
     size_t count = 0;
@@ -71,7 +71,7 @@ static status expose(relight_work *w)
     return s;
 }
 
-/* ---- all of them ---- */
+/* ---- the whole ---- */
 
 static int frame_side(const relight_job *job)
 {
@@ -79,7 +79,7 @@ static int frame_side(const relight_job *job)
     return job->frame ? job->frame : crop < USUAL_FRAME ? crop : USUAL_FRAME;
 }
 
-/* What the relighter has taken over. */
+/* Frees what the relighter has copied. */
 static void let_go(merlin_maps *m)
 {
     merlin_image *spent[] = {&m->albedo, &m->normal, &m->roughness, &m->depth, &m->photo};

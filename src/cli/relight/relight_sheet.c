@@ -12,7 +12,7 @@ void relight_sheet_free(relight_sheet *s)
         merlin_image_free(&s->pictures[i]);
 }
 
-/* In hundredths, and never as "-0.00". */
+/* Rounds to hundredths, without "-0.00". */
 static double shown(float x)
 {
     return round(100 * (double)x) / 100 + 0.0;

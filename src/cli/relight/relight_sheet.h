@@ -13,7 +13,7 @@ typedef struct relight_sheet {
     int count;
 } relight_sheet;
 void relight_label(const merlin_lamp *lights, int count, char label[RELIGHT_LABEL]);
-/* A small copy of the square, if there is room. */
+/* Adds a small copy of the square, if there is room. */
 status relight_sheet_add(relight_sheet *s, const merlin_image *picture, const char *label);
 status relight_sheet_write(const relight_sheet *s, const char *path);
 void relight_sheet_free(relight_sheet *s);

@@ -19,11 +19,11 @@ size_t relight_count_whole(const relight_job *job)
     return relight_count_lights(job) + (size_t)job->dome.count;
 }
 
-/* The least linear value that is not 0 in a file of 8 bits. */
+/* Least linear value that is not 0 in an 8-bit file. */
 static const float LEAST_SEEN = 0.5f / 255 / 12.92f;
 static const double LITTLE_LIT = 0.01;
 
-/* Counts what is white of the object, and what is not black. */
+/* Counts the object's white pixels, and those that are not black. */
 static void note_light(relight_work *w, const merlin_image *square)
 {
     const merlin_image *mask = merlin_relighter_mask(w->relighter);

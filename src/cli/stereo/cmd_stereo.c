@@ -74,7 +74,7 @@ typedef struct request {
     stereo_folder folder;
     merlin_params params;
     stereo_files files;
-    bool maps; /* input is a folder of merlin estimate's */
+    bool maps; /* whether input is a folder of merlin estimate */
     bool near, linear, json, quiet, help;
 } request;
 
@@ -109,7 +109,7 @@ static status take_integration(const char *name, void *into)
     return OK;
 }
 
-/* Without lights beside them: relight --dome may have written its pictures there too. */
+/* Looks for maps in a folder without lights; with lights relight --dome may have written its pictures there, too. */
 static status look_for_maps(const char *folder, bool *alone)
 {
     static const char *const lights[] = {".txt", ".lp", NULL};
@@ -254,8 +254,8 @@ static void doubt_page(stereo_result *result)
     if (crop_around(&result->mask, &c) == OK) page_doubt(c.side, 0, &result->doubts);
 }
 
-/* What the stages cost beside one another is about the same for pictures of any number and size: seconds that twenty of
- * 2048×2048 took two processors. Of one photograph the draws are what is solved. */
+/* Plans the progress by the costs of the stages, in seconds for twenty pictures of 2048×2048 on two processors; ratios
+ * are about the same for pictures of any number and size. With one photograph the draws are solved. */
 static void plan(const request *r, stage_bar *bar)
 {
     static const double solving[] = {[MERLIN_STEREO_LS] = 0.2,

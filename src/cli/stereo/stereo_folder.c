@@ -19,7 +19,7 @@ static void exchange(double *a, double *b)
     *b = old;
 }
 
-/* The value that would stand at place k if they were sorted, which they become a little (Hoare's selection). */
+/* Returns the value of rank k, and partly sorts the values (Hoare's selection). */
 static double of_rank(double *values, size_t count, size_t k)
 {
     size_t low = 0, end = count;
@@ -40,7 +40,7 @@ static double of_rank(double *values, size_t count, size_t k)
     }
 }
 
-/* The values change places. */
+/* Adds statistics; reorders the values. */
 static void put_statistics(cJSON *report, const char *name, double *values, size_t count)
 {
     double sum = 0;
@@ -60,7 +60,7 @@ static size_t take_errors(const stereo_result *r, double *values)
     return count;
 }
 
-/* Angles to the true normals in degrees, where both are known. */
+/* Collects angles to the true normals in degrees, where both are known. */
 static size_t take_angles(const stereo_result *r, const img *truth, double *values)
 {
     size_t count = 0, pixels = (size_t)r->mask.width * (size_t)r->mask.height;
@@ -72,7 +72,7 @@ static size_t take_angles(const stereo_result *r, const img *truth, double *valu
     return count;
 }
 
-/* Positions in the unit of the camera's mean distance, which is 1 if unknown. */
+/* Adds the lights, with positions in units of the camera's mean distance, which is 1 if unknown. */
 static void put_lights(cJSON *report, const merlin_capture *c, const merlin_surface *s)
 {
     const merlin_light *light = s->lights;
@@ -107,7 +107,7 @@ static status put_report(cJSON *report, const merlin_capture *c, const merlin_su
     return OK;
 }
 
-/* Takes normal, depth and residual over from the surface; a grey albedo becomes three channels. */
+/* Moves normal, depth and residual from the surface; a grey albedo becomes three channels. */
 static status take_surface(const merlin_capture *c, merlin_surface *s, stereo_result *r)
 {
     *r = (stereo_result){.error_name = "residual", .error_white = RESIDUAL_WHITE, .camera = c->camera};

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Photometric stereo of a capture on disk, ready to be written. */
+/* Photometric stereo of a capture on disk, with results ready to be written. */
 #ifndef MERLIN_CLI_STEREO_STEREO_FOLDER_H
 #define MERLIN_CLI_STEREO_STEREO_FOLDER_H
 
@@ -14,8 +14,8 @@ typedef struct stereo_folder {
     merlin_stereo_params params;
 } stereo_folder;
 
-/* What was found is added to the report: the method, sizes, the fit's residual, found lights, and errors against ground
- * truth where the layout has it. */
+/* Solves the capture, and adds results to the report: the method, sizes, the fit's residual, lights, and errors
+ * compared with ground truth if the layout has it. */
 status stereo_from_folder(const stereo_folder *f, stereo_result *out, cJSON *report);
 
 #endif

@@ -78,7 +78,7 @@ static status write_error(const stereo_result *r, const char *path)
     return s;
 }
 
-/* The part of a tile that shows the object; large photographs often show little of it. */
+/* Crops a tile to the object, which may be small in large photographs. */
 static status crop_tile(crop_square c, img *tile)
 {
     img part = {0};
@@ -128,15 +128,15 @@ static status write_report(const cJSON *report, const char *path)
     return s;
 }
 
-/* ---- all of them ---- */
+/* ---- the whole ---- */
 
 typedef struct output {
     const char *name;
     status (*write)(const stereo_result *r, const char *path); /* NULL: a mesh */
 } output;
 
-/* The slowest first, so that two processors end together; of these the meshes, which others replace if they are asked
- * for by name. */
+/* Output files, the slowest first, so that two processors finish together; among these the meshes, which are replaced
+ * by those requested by name. */
 static const output outputs[] = {
     {"mesh.obj", NULL},
     {"mesh.glb", NULL},
@@ -156,7 +156,7 @@ typedef struct writing {
     const staging *staging;
     const stereo_result *result;
     const merlin_mesh *mesh;
-    size_t first; /* output */
+    size_t first; /* index of the first output */
 } writing;
 
 static status write_one(void *context, size_t i)
@@ -178,7 +178,7 @@ static status write_all(const stereo_files *files, const staging *t, const stere
     return s == OK ? write_report(report, staging_path(t, "report.json", path)) : s;
 }
 
-/* The page of the maps as relight reads them. */
+/* Writes the page of the maps as relight reads them. */
 static status write_page(const stereo_files *files, const staging *t)
 {
     char path[PATH_MAX], *folder = file_folder_of(staging_path(t, "maps.exr", path));

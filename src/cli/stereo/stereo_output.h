@@ -13,13 +13,13 @@ typedef struct stereo_files {
     const char *folder;
     const char *const *inputs; /* as in staging_begin */
     mesh_names mesh;           /* none: mesh.ply, mesh.obj and mesh.glb in the folder */
-    bool page;                 /* viewer.html, too, */
-    const char *input;         /* and what its maps are of */
+    bool page;                 /* whether to write viewer.html */
+    const char *input;         /* source of its maps */
     int (*stop)(void);
 } stereo_files;
 
-/* maps.exr, normal.png (16 bits), albedo.png, depth.png, mask.png, error.png, overview.png, report.json, the page and
- * the meshes, wherever those are wanted: all, their paths added to *written, or, after a failure to write, none. */
+/* Writes maps.exr, normal.png (16 bits), albedo.png, depth.png, mask.png, error.png, overview.png, report.json, the
+ * page and the meshes in their places: all, with their paths added to *written, or, after a failure, none. */
 status stereo_write(const stereo_files *files, const stereo_result *r, const cJSON *report, staged_files *written);
 
 #endif

@@ -16,7 +16,7 @@
 enum { LARGEST_SIDE = 512 };
 static const float SPREAD_WHITE = 20;
 
-/* Everything relit, and what the draws add up to. */
+/* The relit pictures, and sums over the draws. */
 typedef struct work {
     const stereo_photo *photo;
     merlin_model *model;
@@ -71,7 +71,7 @@ static vec3 normal_at(const img *normal, size_t pixel)
     return vec3_of(normal->data + 3 * pixel);
 }
 
-/* Of one pixel; returns the root mean square angle of the draws to their mean, in degrees. */
+/* Averages one pixel; returns the root mean square angle of the draws to their mean, in degrees. */
 static float average(const work *w, size_t pixel, float *mean)
 {
     vec3 sum = {0, 0, 0};
@@ -87,7 +87,7 @@ static float average(const work *w, size_t pixel, float *mean)
     return sqrtf(square);
 }
 
-/* Where the draws contradict each other, as they do along a silhouette that few lights reach, they say nothing. */
+/* Uses the network's normals where the draws contradict each other, as at a silhouette that few lights reach. */
 static bool believe_network(const work *w, size_t pixel, stereo_result *out)
 {
     if (out->error.data[pixel] <= SPREAD_WHITE) return false;
@@ -124,7 +124,7 @@ static status result_new(work *w, stereo_result *out)
         .error_name = "spread of the normals", .error_white = SPREAD_WHITE, .camera = w->relit.capture.camera};
     status s = img_copy(&out->mask, &w->relit.capture.mask);
     if (s == OK) s = img_new(&out->normal, side, side, 3);
-    /* the pictures were made from it: a solver can only blur it with highlights */
+    /* the pictures were rendered from it: a solver could only blur it with highlights */
     if (s == OK) s = img_copy(&out->albedo, &w->relit.maps.albedo);
     if (s == OK) s = img_new(&out->error, side, side, 1);
     return s;

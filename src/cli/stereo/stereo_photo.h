@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Photometric stereo from one photograph: estimate, relight under many known near lights, solve, several times over. */
+/* Photometric stereo from one photograph: estimate, relight under many known near lights, and solve, several times. */
 #ifndef MERLIN_CLI_STEREO_STEREO_PHOTO_H
 #define MERLIN_CLI_STEREO_STEREO_PHOTO_H
 
@@ -10,8 +10,8 @@
 #include "stereo/methods/solve.h"
 
 typedef struct stereo_photo {
-    const char *photo;           /* or a folder of merlin estimate's, whose maps are taken */
-    const char *mask;            /* the photograph's, or NULL */
+    const char *photo;           /* or a folder of merlin estimate, whose maps are used */
+    const char *mask;            /* mask of the photograph, or NULL */
     const char *weights, *flash; /* as of photo_find_models */
     merlin_params params;
     merlin_stereo_method method; /* MERLIN_STEREO_AUTO: near */

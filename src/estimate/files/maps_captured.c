@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* The maps of a captured surface, made a photograph's: the crop around it is a frame 60 degrees wide, its mean depth is
- * 1, its relief keeps its proportion to its width. Nothing was measured of its gloss: it is rough. There is no
- * photograph: `photo` is black. */
+/* Converts the maps of a captured surface to those of a photograph: the crop around it is a frame 60 degrees wide, its
+ * mean depth is 1, and its relief keeps its proportion to its width. Its gloss was not measured: it is rough. There is
+ * no photograph: `photo` is black. */
 
 #include <math.h>
 #include <stdio.h>
@@ -19,10 +19,10 @@
 enum { FRAME = 256 };
 /* Radiance of a white matte surface that faces a lamp at distance 1. */
 static const float WHITE = LIGHT_POWER / PI;
-/* Of depth, as estimates have it; nearer than this a surface would reach the camera. */
+/* Range of depth, as for estimates; nearer than this a surface would reach the camera. */
 static const float nearest = 0.25f, farthest = 20;
 
-/* No lens is so wide that its focal length is less than a hundredth of the picture. */
+/* Reads the focal length; no lens is so wide that it is less than a hundredth of the picture. */
 static status read_focal(const exr_file *f, const char *path, float *focal)
 {
     const int side = exr_width(f) > exr_height(f) ? exr_width(f) : exr_height(f);
@@ -38,8 +38,8 @@ static bool is_object(const merlin_maps *maps, size_t i)
     return maps->mask.data[i] >= 0.5f;
 }
 
-/* The unit of a capture's albedo is that of its lights' strengths, which may be any: its bright parts are brought
- * between a dark grey's and white's, if they are not there. */
+/* Range of the albedo's bright parts (a quantile), from a dark grey to white: its unit is that of the lights'
+ * strengths, which may be any, so that it is scaled to this range if it is outside. */
 static const float BRIGHT_PART = 0.999f, LEAST_BRIGHT = 0.2f, MOST_BRIGHT = 1;
 
 static int compare_floats(const void *a, const void *b)
@@ -66,7 +66,8 @@ static status normalize_albedo(merlin_maps *maps)
     return OK;
 }
 
-/* A surface that was solved badly may be deeper than the camera is far; some spikes are usual. */
+/* Share of pixels with clamped depth from which on there is a warning: a badly solved surface may be deeper than the
+ * camera is distant; some spikes are usual. */
 static const double DEPTH_WORTH_A_WORD = 0.01;
 
 static void doubt_depth(size_t clamped, size_t count, merlin_maps *maps)
@@ -75,7 +76,7 @@ static void doubt_depth(size_t clamped, size_t count, merlin_maps *maps)
     if ((double)maps->mended.depth > DEPTH_WORTH_A_WORD) maps->doubts |= MERLIN_DOUBT_DEPTH_CLAMPED;
 }
 
-/* focal: pixels; 0: seen from afar, with depths in pixels. */
+/* Converts depth; focal: pixels; 0: orthographic, with depths in pixels. */
 static status place_depth(merlin_maps *maps, float focal, float pitch)
 {
     size_t pixels = (size_t)maps->mask.width * (size_t)maps->mask.height, count = 0, clamped = 0;
@@ -99,8 +100,8 @@ static status place_depth(merlin_maps *maps, float focal, float pitch)
     return OK;
 }
 
-/* Into the camera of estimates, which sees it under 60 degrees. The shape stays what it is, and so do its normals:
- * lights come from where they are said to. */
+/* Moves the surface into the camera of estimates, with its 60 degrees. Its shape is unchanged, and so are its normals,
+ * so that lights have the stated directions. */
 static status place(merlin_maps *maps, float focal)
 {
     img mask = maps->mask;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Lamps, their lists, and the light that was found in a photograph (merlin/lights.h). */
+/* merlin/lights.h: lamps, their lists, and the estimated light of a photograph. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -24,7 +24,7 @@ merlin_lamp merlin_lamp_toward(float x, float y, float z)
     return lamp_public(lamp_toward(vec3_make(x, y, z)));
 }
 
-/* A Fibonacci spiral: equal steps of cosθ, the golden angle in φ. */
+/* Returns direction i of a Fibonacci spiral: equal steps of cosθ, the golden angle in φ. */
 static vec3 dome_direction(int i, int count)
 {
     real cosine = 1 - ((real)i + (real)0.5) / (real)count, sine = sqrt(1 - cosine * cosine);
@@ -62,7 +62,7 @@ merlin_status merlin_temperature_color(double kelvin, float color[3])
 
 /* ---- lists ---- */
 
-/* The directions of other programs' lists would be places behind the camera. */
+/* Warns about directions in other programs' lists, which as positions would be behind the camera. */
 static void note_list(const char *path, const light_list *list, warnings *noticed)
 {
     bool behind = list->count > 1 && !list->about_object && !list->angles && light_list_is_unit(list);

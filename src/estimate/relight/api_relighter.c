@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* merlin_relighter: maps made ready for many lights (merlin/relight.h). */
+/* merlin_relighter: maps prepared for many lights (merlin/relight.h). */
 #include <math.h>
 #include <stdlib.h>
 
@@ -14,8 +14,8 @@ enum { LARGEST_SIDE = 8000 };
 struct merlin_relighter {
     network *network;
     relighter relighter;
-    crop_square crop;  /* of the photograph, */
-    int width, height; /* which is so large */
+    crop_square crop;  /* crop of the photograph */
+    int width, height; /* size of the photograph */
 };
 
 static status check_side(int side)
@@ -69,7 +69,7 @@ static status check_lamp(const merlin_lamp *l)
     return length > 1e-6f && length < 1e18f ? OK : fail(MERLIN_WRONG_USE, "a lamp's direction has no length");
 }
 
-/* Converts lamps; *out is malloc'ed, after a failure NULL. */
+/* Converts lamps; *out is malloc'ed, NULL after a failure. */
 static status take_lamps(const merlin_lamp *lamps, size_t count, lamp **out)
 {
     status s = OK;

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Public lamps (merlin/lights.h) as optics has them. */
+/* Converts public lamps (merlin/lights.h) to those of optics. */
 #ifndef MERLIN_ESTIMATE_RELIGHT_LAMP_OF_H
 #define MERLIN_ESTIMATE_RELIGHT_LAMP_OF_H
 
 #include "merlin/lights.h"
 #include "optics/light.h"
 
-/* Converts a lamp; a direction that is unit but for rounding stays as it is. */
+/* Converts a lamp; a direction that is unit within rounding errors is unchanged. */
 static inline lamp lamp_of(const merlin_lamp *l)
 {
     vec3 at = vec3_of(l->at);

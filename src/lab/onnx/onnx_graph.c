@@ -6,10 +6,10 @@
 
 #include "nn/params.h"
 
-/* What batch norm adds to a variance, and the length below which a vector is not made longer (nn.h). */
+/* Constants of nn.h: what batch norm adds to a variance, and the length below which a vector is not normalized. */
 static const float norm_epsilon = 1e-5f, least_length = 1e-6f;
 
-/* The vectors' precision is the runtime's affair. */
+/* Tells whether an operation only converts numbers, which is left to the runtime. */
 static bool is_conversion(nn_op op)
 {
     return op == OP_COMPUTE || op == OP_FLOAT;
@@ -28,7 +28,7 @@ const char *onnx_value_name(const nn_node *x, char name[ONNX_NAME])
 
 /* ---- constants ---- */
 
-/* Gives a node a constant of its own as its next input: "v7.scale". */
+/* Adds a constant as a node's next input: "v7.scale". */
 static void put_constant(onnx_graph *g, protobuf *node, const nn_node *x, const char *what, const onnx_tensor *values)
 {
     char name[ONNX_NAME], whole[ONNX_NAME + 16];
@@ -51,7 +51,7 @@ static void put_int64s(onnx_graph *g, protobuf *node, const nn_node *x, const ch
     put_constant(g, node, x, what, &(onnx_tensor){.type = ONNX_INT64, .rank = 1, .shape = {count}, .data = values});
 }
 
-/* Adds a parameter; of one that is stored as half floats the constant is these, and a node makes the rest of it. */
+/* Adds a parameter; if it is stored as half floats, these are the constant, and a node converts them. */
 static void write_parameter(onnx_graph *g, const nn_param *p)
 {
     char half_name[ONNX_NAME + 8];
@@ -91,7 +91,7 @@ static void add(onnx_graph *g, protobuf *node)
     protobuf_message(&g->message, ONNX_GRAPH_NODE, node);
 }
 
-/* Begins a node that takes what x takes. */
+/* Begins a node with the inputs of x. */
 static protobuf begin(const nn_node *x, const char *operation)
 {
     char name[ONNX_NAME];
@@ -101,7 +101,7 @@ static protobuf begin(const nn_node *x, const char *operation)
     return node;
 }
 
-/* Begins a node on the way to x, whose value is called "v7.what", and takes one input, from. */
+/* Begins an intermediate node of x, whose value is called "v7.what", with one input, from. */
 static protobuf begin_step(const nn_node *x, const char *operation, const char *what, const char *from)
 {
     char name[ONNX_NAME], whole[ONNX_NAME + 16];
@@ -303,7 +303,7 @@ static void put_nothing(onnx_graph *g, const nn_node *x)
     (void)x;
 }
 
-/* The rendering layer, its surroundings and losses have none. */
+/* Functions that add the counterparts of operations; the rendering layer, its environment and losses have none. */
 static put_operation *const counterpart[OP_COUNT] = {
     [OP_INPUT] = put_nothing,
     [OP_COMPUTE] = put_nothing,

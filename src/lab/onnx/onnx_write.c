@@ -6,10 +6,10 @@
 #include "lab/onnx/onnx.h"
 #include "lab/onnx/onnx_graph.h"
 
-/* Which nodes of a graph are written. */
+/* Nodes of a graph to be written. */
 typedef struct onnx_choice {
-    bool *possible; /* ONNX has all that a node stands on */
-    bool *needed;   /* by an output that is possible */
+    bool *possible; /* whether ONNX has all operations that a node depends on */
+    bool *needed;   /* whether a possible output needs it */
 } onnx_choice;
 
 static void find_possible(const nn_graph *g, bool *possible)
@@ -22,7 +22,7 @@ static void find_possible(const nn_graph *g, bool *possible)
     }
 }
 
-/* Goes from the outputs back, as nodes stand behind their inputs. Returns how many outputs there are. */
+/* Goes back from the outputs, as nodes follow their inputs. Returns the number of outputs. */
 static int find_needed(const nn_graph *g, const onnx_choice *choice)
 {
     int outputs = 0;

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How the bytes behind a field's number are to be read. */
+/* Encodings of the bytes after a field's number. */
 enum { WIRE_INTEGER = 0, WIRE_BYTES = 2, WIRE_FLOAT = 5, WIRE_BITS = 3 };
 
 void protobuf_free(protobuf *message)
@@ -36,7 +36,7 @@ static void append(protobuf *m, const void *data, size_t size)
     m->size += size;
 }
 
-/* Seven bits a byte, the lowest first; all but the last have the eighth set. */
+/* Appends seven bits per byte, the lowest first; all bytes but the last have the eighth bit set. */
 static void append_varint(protobuf *m, uint64_t value)
 {
     uint8_t bytes[10];

@@ -9,7 +9,7 @@
 #include "base/file.h"
 #include "base/json/json_put.h"
 
-/* Pages of results run their own scripts and ask nobody for anything. */
+/* Content security policy of results: their pages run their own scripts and access nothing. */
 #define RESULT_POLICY                                                                                                  \
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src 'self' data: blob:; "          \
     "connect-src data: blob:; frame-ancestors 'self'; base-uri 'none'; form-action 'none'"

@@ -11,7 +11,7 @@
 
 enum { NAME = 256 };
 
-/* Parts "name:port" or "[address]:port"; *port is 0 where none is said. Returns false for what is neither. */
+/* Splits "name:port" or "[address]:port"; *port is 0 if there is none. Returns false for anything else. */
 static bool split(const char *host, char name[NAME], int *port)
 {
     const char *end = *host == '[' ? strchr(host, ']') : NULL;
@@ -35,7 +35,7 @@ static bool is_own_name(const char *name)
     return strcasecmp(name, "localhost") == 0 || strcmp(name, "127.0.0.1") == 0 || strcmp(name, "::1") == 0;
 }
 
-/* An address cannot have been made to point elsewhere. */
+/* Tells whether a name is an address, which DNS rebinding cannot change. */
 static bool is_address(const char *name)
 {
     struct in6_addr room;
@@ -53,7 +53,7 @@ static bool is_ours(const guard *g, const char *host)
     return here && (is_own_name(name) || (!g->local && is_address(name)));
 }
 
-/* A page's origin is "http://" or, behind a proxy, "https://" and the name it was asked by. */
+/* Tells whether a page's origin is "http://" or, behind a proxy, "https://" and the requested name. */
 static bool is_same_site(const char *origin, const char *host)
 {
     const char *name = strstr(origin, "://");

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* Who may ask: pages of other sites may not, by whatever name they call this machine, and other machines need a token.
+/* Access control: pages of other sites have none, by whatever name they call this machine, and other machines need a
+ * token.
  *
- * A browser tells two things that a page cannot forge. Host is the name in the address: a name that another site's
- * owner made point here (DNS rebinding) is none of ours. Origin, and Sec-Fetch-Site, tell which page has asked: only
- * those of this server may. */
+ * A browser sends two headers that a page cannot forge. Host is the name in the address: a name of another site's owner
+ * that points here (DNS rebinding) is not one of this server. Origin and Sec-Fetch-Site identify the page that sends
+ * the request: only those of this server are accepted. */
 #ifndef MERLIN_SERVE_HTTP_GUARD_H
 #define MERLIN_SERVE_HTTP_GUARD_H
 
@@ -15,30 +16,30 @@ enum { GUARD_MOST_NAMES = 16, GUARD_LEAST_TOKEN = 16 };
 
 typedef struct guard {
     int port;
-    bool local;                          /* this machine alone: Host is one of its own names, with the port */
-    const char *names[GUARD_MOST_NAMES]; /* others by which it may be called, with any port; ended by NULL */
-    const char *token;                   /* NULL: none is asked for */
+    bool local;                          /* only this machine: Host is one of its own names, with the port */
+    const char *names[GUARD_MOST_NAMES]; /* further names of the server, with any port; ended by NULL */
+    const char *token;                   /* NULL: none is required */
 } guard;
 
-/* What a request says of itself; each may be NULL. */
+/* Headers of a request; each may be NULL. */
 typedef struct guard_asked {
     const char *host, *origin, *fetch_site;
     const char *authorization, *cookie;
-    bool is_page; /* asks for the page itself, which may be followed to from anywhere */
+    bool is_page; /* whether it requests the page itself, to which any page may link */
 } guard_asked;
 
 typedef enum guard_answer {
     GUARD_PASSES,
-    GUARD_NO_HOST,    /* none is named, or another's */
-    GUARD_OTHER_SITE, /* another page asks */
-    GUARD_NO_TOKEN,   /* none, or a wrong one */
+    GUARD_NO_HOST,    /* missing, or another server's */
+    GUARD_OTHER_SITE, /* sent by another site's page */
+    GUARD_NO_TOKEN,   /* missing or wrong */
 } guard_answer;
 
 guard_answer guard_ask(const guard *g, const guard_asked *asked);
 
 /* Tells whether a text is the token, in a time that does not depend on where they differ. */
 bool guard_is_token(const guard *g, const char *text);
-/* The cookie's name, which has the port in it: ports of a machine share their cookies. */
+/* Length of the cookie's name, which contains the port, as the ports of a machine share their cookies. */
 enum { GUARD_COOKIE = 32 };
 void guard_cookie(const guard *g, char name[GUARD_COOKIE]);
 

@@ -8,7 +8,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-/* Returns -1, and errno, where the address cannot be had. */
+/* Opens a socket; returns -1 and errno if the address is not available. */
 static int open_socket(const struct addrinfo *at)
 {
     enum { PENDING = 128 };

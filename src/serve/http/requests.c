@@ -10,18 +10,18 @@
 #include "serve/http/answer.h"
 #include "serve/jobs/work_find.h"
 
-/* What is remembered of a request until its body is there. */
+/* State of a request until its body has arrived. */
 typedef struct request {
-    const work_kind *kind; /* of a POST; NULL: another, whose body is not read */
+    const work_kind *kind; /* of a POST; NULL for others, whose body is not read */
     upload *upload;        /* NULL: it will be refused */
-    uint64_t ignored;      /* bytes of a body that nobody reads */
-    unsigned code;         /* refused with this, once its body is over; 0: it is not */
+    uint64_t ignored;      /* bytes of a body that is not read */
+    unsigned code;         /* status of a refusal after its body; 0: none */
     const char *fault, *words;
 } request;
 
 enum { LONGEST_IGNORED = 64 << 10 };
 
-/* ---- who asks ---- */
+/* ---- access ---- */
 
 static enum MHD_Result refuse_asker(const request_site *site, struct MHD_Connection *c, guard_answer answer)
 {
@@ -53,7 +53,7 @@ static guard_answer ask(const request_site *site, struct MHD_Connection *c, bool
     return guard_ask(&site->guard, &asked);
 }
 
-/* A browser that brings the token in the page's address gets it as a cookie, which no script can read. */
+/* Gives a browser that has the token in the page's address a cookie, which scripts cannot read. */
 static bool signs_in(const request_site *site, struct MHD_Connection *c)
 {
     const char *token = http()->lookup_connection_value(c, MHD_GET_ARGUMENT_KIND, "token");
@@ -97,7 +97,7 @@ static enum MHD_Result answer_status(const request_site *site, struct MHD_Connec
     return answer_json(c, MHD_HTTP_OK, o, NULL);
 }
 
-/* rest: what follows /v1/jobs/. */
+/* Answers requests for a job; rest: what follows /v1/jobs/. */
 static enum MHD_Result answer_job(const request_site *site, struct MHD_Connection *c, const char *rest, bool remove)
 {
     static const char files[] = "/files/";
@@ -142,7 +142,7 @@ static void will_refuse(request *r, unsigned code, const char *fault, const char
     r->words = words;
 }
 
-/* Returns the announced length of a body; 0 where it is not. */
+/* Returns the announced length of a body; 0 if there is none. */
 static uint64_t announced(struct MHD_Connection *c)
 {
     const char *text = http_header(c, "Content-Length");
@@ -205,7 +205,7 @@ static enum MHD_Result end_post(const request_site *site, struct MHD_Connection 
 
 /* ---- the callbacks ---- */
 
-/* Looks at a request's head. Returns NULL where it was answered, or its connection is to be closed: *result. */
+/* Examines a request's head. Returns NULL if it was answered, or its connection must be closed: *result. */
 static request *begin(const request_site *site, struct MHD_Connection *c, const char *url, const char *method,
                       enum MHD_Result *result)
 {
@@ -231,7 +231,7 @@ static request *begin(const request_site *site, struct MHD_Connection *c, const 
     return r;
 }
 
-/* Returns false where no more of a body is to be read. */
+/* Takes a piece of the body; returns false to stop reading it. */
 static bool take(request *r, const char *data, size_t size)
 {
     if (r->upload) return upload_take(r->upload, data, size);

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* What is answered to which request:
+/* Requests and their responses:
  *
  *     GET    /                              the page
- *     GET    /v1/openapi.json               the description of all this
- *     GET    /v1/status                     version, limits, how many wait
- *     POST   /v1/KIND                       an upload becomes a job (jobs/work.h has the kinds)
- *     GET    /v1/jobs/ID                    how far it is, and the names of its files
+ *     GET    /v1/openapi.json               the description of this interface
+ *     GET    /v1/status                     version, limits, number of waiting jobs
+ *     POST   /v1/KIND                       an upload becomes a job (jobs/work.h lists the kinds)
+ *     GET    /v1/jobs/ID                    its progress, and the names of its files
  *     DELETE /v1/jobs/ID                    stops it and removes its files
  *     GET    /v1/jobs/ID/files/NAME         one of these */
 #ifndef MERLIN_SERVE_HTTP_REQUESTS_H
@@ -22,7 +22,7 @@ typedef struct request_site {
     const store *store;
     jobs *jobs;
     const char *page, *page_policy, *openapi; /* texts */
-    const char *model;                        /* its name */
+    const char *model;                        /* name of the model */
     double keep;                              /* seconds */
 } request_site;
 

@@ -16,16 +16,16 @@ struct upload {
     const upload_limits *limits;
     struct MHD_PostProcessor *parser;
     form form;
-    int file;       /* the descriptor of the file that comes in; -1: none */
-    char *value;    /* of the field that comes in; NULL: none */
-    size_t length;  /* of the value */
+    int file;       /* descriptor of the file being received; -1: none */
+    char *value;    /* value of the field being received; NULL: none */
+    size_t length;  /* length of the value */
     uint64_t taken; /* bytes of the request */
     double began;
     upload_fault fault;
-    char words[512]; /* what is wrong */
+    char words[512]; /* message of the fault */
 };
 
-/* Notes the first fault: what follows is a consequence. */
+/* Records the first fault; further ones are its consequences. */
 static enum MHD_Result refuse(upload *u, upload_fault fault, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 static enum MHD_Result refuse(upload *u, upload_fault fault, const char *format, ...)
@@ -82,7 +82,7 @@ static enum MHD_Result begin_field(upload *u, const char *key)
     return MHD_YES;
 }
 
-/* Writes to the file or the value that is open. */
+/* Appends to the open file or value. */
 static enum MHD_Result continue_part(upload *u, const char *key, const char *data, size_t size)
 {
     if (u->file < 0) {
@@ -106,7 +106,8 @@ static enum MHD_Result continue_part(upload *u, const char *key, const char *dat
     return MHD_YES;
 }
 
-/* Hears of each piece of each part; a part begins at 0. A file that was chosen by nobody has no name, and is none. */
+/* Receives each piece of each part; a part begins at 0. A file field without a chosen file has no name, and is ignored.
+ */
 static enum MHD_Result hear(void *context, enum MHD_ValueKind kind, const char *key, const char *name, const char *type,
                             const char *encoding, const char *data, uint64_t at, size_t size)
 {

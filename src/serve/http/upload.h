@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* A multipart form on its way in: files go to the store as they come, and nothing is kept beyond the limits.
+/* A multipart form being received: files are written to the store as they arrive, and nothing beyond the limits is
+ * kept.
  *
  *     upload *u = upload_new(store, &limits, connection);
  *     upload_take(u, data, size);                     for every piece
- *     status s = upload_finish(u, &form);             what was wrong with it is told at the end
- *     upload_free(u);                                 removes what nobody has taken over */
+ *     status s = upload_finish(u, &form);             reports faults at the end
+ *     upload_free(u);                                 removes everything that was not taken over */
 #ifndef MERLIN_SERVE_HTTP_UPLOAD_H
 #define MERLIN_SERVE_HTTP_UPLOAD_H
 
@@ -13,20 +14,20 @@
 
 typedef struct upload_limits {
     uint64_t bytes; /* of a request */
-    size_t files;   /* in it */
-    double seconds; /* that it may take */
+    size_t files;   /* of a request */
+    double seconds; /* allowed for it */
 } upload_limits;
 
 typedef struct upload upload;
 
-/* Why an upload was refused, beside what status_message() says. */
+/* Why an upload was refused, in addition to status_message(). */
 typedef enum upload_fault { UPLOAD_FINE, UPLOAD_WRONG, UPLOAD_TOO_LARGE, UPLOAD_NO_ROOM } upload_fault;
 
-/* NULL: no memory. */
+/* Makes an upload; NULL without memory. */
 upload *upload_new(const store *s, const upload_limits *limits, struct MHD_Connection *c);
-/* Returns false where no more of it is to be read: far too much of it, or too slow. */
+/* Takes a piece; returns false to stop reading, for uploads that are far too large or too slow. */
 bool upload_take(upload *u, const char *data, size_t size);
-/* The form is taken over; status_message() says what is wrong with it otherwise. */
+/* Takes the form over, or returns the fault with a message in status_message(). */
 upload_fault upload_finish(upload *u, form *out);
 void upload_free(upload *u);
 

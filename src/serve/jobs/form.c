@@ -8,7 +8,7 @@
 
 #include "base/text/text_number.h"
 
-/* ---- what was sent ---- */
+/* ---- fields ---- */
 
 /* Returns room for one more of `count` items that are kept in blocks; NULL without memory. */
 static void *grown(void *items, size_t count, size_t size)
@@ -54,7 +54,7 @@ void form_free(form *f)
     *f = (form){.bytes = 0};
 }
 
-/* ---- what may be sent ---- */
+/* ---- checks ---- */
 
 static const form_key *find_key(const form_key *known, const char *name)
 {

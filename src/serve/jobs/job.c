@@ -44,7 +44,7 @@ void job_tell(job *j, const char *stage, float share)
     for (const work_stage *s = j->kind->stages; s->name; s++) {
         if (strcmp(s->name, stage) == 0) {
             const float now = before + s->share * share;
-            if (now > j->progress) j->progress = now; /* a bar does not go back */
+            if (now > j->progress) j->progress = now; /* progress does not decrease */
             snprintf(j->stage, sizeof j->stage, "%s", stage);
             return;
         }
@@ -69,7 +69,7 @@ static status list_results(job *j, char **names, size_t count)
     return OK;
 }
 
-/* Adds the report that was written beside maps. */
+/* Adds the report that was written with the maps. */
 static void take_report(job *j, const char *path)
 {
     enum { MOST = 1 << 20 };
@@ -123,7 +123,7 @@ void job_hide_folders(const job *j, const store *s, char *message)
     remove_all(message, store_path(s, j->form.id, STORE_OUT, NULL, path));
 }
 
-/* ---- what is told ---- */
+/* ---- JSON ---- */
 
 static void put_files(const job *j, cJSON *to)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* One job: what it was asked for, how far it is, what came of it. The queue (jobs/jobs.h) guards it by a lock. */
+/* One job: its request, progress and results. The queue (jobs/jobs.h) protects it by a lock. */
 #ifndef MERLIN_SERVE_JOBS_JOB_H
 #define MERLIN_SERVE_JOBS_JOB_H
 
@@ -19,9 +19,9 @@ typedef struct job {
     const work_kind *kind;
     void *request;
     job_state state;
-    bool unwanted; /* its client has let go of it: it is removed as soon as nobody works on it */
+    bool unwanted; /* its client has removed it: it is deleted as soon as nothing works on it */
     char stage[32];
-    float progress; /* of all stages, in [0, 1] */
+    float progress; /* over all stages, in [0, 1] */
     time_t made, ended;
     status failure;
     char error[1024];
@@ -31,22 +31,22 @@ typedef struct job {
     uint64_t bytes;
 } job;
 
-/* Takes the form over, and what it asks for was checked. */
+/* Makes a job; takes over the form and the checked request. */
 job *job_new(const work_kind *kind, form *f, void *request);
 /* Frees it and removes its files. */
 void job_free(job *j, const store *s);
 
 bool job_has_ended(const job *j);
-/* Notes a stage and the share of it that is done. */
+/* Records a stage and the share of it that is done. */
 void job_tell(job *j, const char *stage, float share);
 /* Lists the files of its results; an ended job keeps none of its uploads. */
 status job_take_results(job *j, const store *s);
-/* The name as the job has it, or NULL: nothing of the client's is made a path. */
+/* Returns the file of this name, or NULL: a path is never made from a client's text. */
 const job_file *job_find_file(const job *j, const char *name);
-/* Replaces the folders of the store in a message by nothing: clients know the files' names alone. */
+/* Removes the store's folders from a message, as clients know only the files' names. */
 void job_hide_folders(const job *j, const store *s, char *message);
-/* What its client is told. position: how many jobs come before it. keep: seconds for which it stays when it has ended.
- */
+/* Returns the job's state for its client. position: number of jobs before it. keep: seconds for which it is kept after
+ * its end. */
 cJSON *job_json(const job *j, size_t position, double keep);
 
 #endif

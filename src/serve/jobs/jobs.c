@@ -19,11 +19,11 @@ struct jobs {
     pthread_cond_t more;
     pthread_t worker;
     bool running, closing;
-    job **at; /* in the order in which they came */
+    job **at; /* in the order of their arrival */
     size_t count, room;
 };
 
-/* Whether the job at work is to stop: the library asks without a context. */
+/* Whether the current job must stop; a global, as the library's callback has no context. */
 static atomic_bool stopping;
 
 static int stops(void)
@@ -31,7 +31,7 @@ static int stops(void)
     return atomic_load(&stopping);
 }
 
-/* ---- looked up under the lock ---- */
+/* ---- lookup, with the lock held ---- */
 
 static job *find(const jobs *q, const char *id)
 {
@@ -48,7 +48,7 @@ static size_t waiting(const jobs *q)
     return count;
 }
 
-/* How many jobs a queued one waits for. */
+/* Returns the number of jobs before a queued one. */
 static size_t position(const jobs *q, const job *j)
 {
     size_t before = 0;
@@ -63,7 +63,7 @@ static void remove_at(jobs *q, size_t i)
     memmove(&q->at[i], &q->at[i + 1], (--q->count - i) * sizeof *q->at);
 }
 
-/* ---- what is kept ---- */
+/* ---- retention ---- */
 
 static void remove_oldest(jobs *q)
 {
@@ -84,7 +84,7 @@ static bool is_too_much(const jobs *q)
     return ended > q->params.most_kept || (ended > 1 && bytes > q->params.most_bytes);
 }
 
-/* With the lock held. */
+/* Removes expired jobs, with the lock held. */
 static void tidy(jobs *q)
 {
     const time_t now = time(NULL);
@@ -118,7 +118,7 @@ static void hear(void *context, const char *stage, float share)
     pthread_mutex_unlock(&t->queue->lock);
 }
 
-/* Waits for a job that is queued; NULL when the queue closes. */
+/* Waits for a queued job; returns NULL when the queue closes. */
 static job *next(jobs *q)
 {
     job *found = NULL;
@@ -154,7 +154,7 @@ static status work_on(jobs *q, job *j)
     return s == OK && stops() ? fail(MERLIN_STOPPED, "stopped") : s;
 }
 
-/* Notes how a job has ended. The uploads have done their work; of what failed nothing is kept. */
+/* Records the end of a job, and deletes its uploads and, if it failed, its results. */
 static void end(jobs *q, job *j, status s)
 {
     char words[sizeof j->error];
@@ -227,7 +227,7 @@ bool jobs_have_room(jobs *q)
     return room;
 }
 
-/* Puts a file of an earlier job's results among the uploads of one that uses it. With the lock held. */
+/* Adds a file of an earlier job's results to the uploads of one that uses it, with the lock held. */
 static jobs_answer borrow(jobs *q, const work_kind *kind, const form *f)
 {
     const char *id = form_value(f, "job");
@@ -242,7 +242,7 @@ static jobs_answer borrow(jobs *q, const work_kind *kind, const form *f)
     return JOBS_BROKEN;
 }
 
-/* With the lock held. */
+/* Appends a job, with the lock held. */
 static jobs_answer append(jobs *q, const work_kind *kind, form *f, void *request)
 {
     if (waiting(q) >= q->params.most_waiting || q->count >= q->room) return JOBS_FULL;

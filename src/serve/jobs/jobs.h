@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-/* The queue: jobs wait in the order in which they came, one thread works on them, and what came of them stays for a
- * while.
+/* The queue: jobs wait in the order of their arrival, one thread processes them, and their results are kept for some
+ * time.
  *
  *     jobs *queue;
  *     char id[STORE_ID];
  *     if (jobs_open(&params, &queue) == OK && jobs_add(queue, work_find("estimate"), &form, id) == JOBS_TAKEN) ...
  *     cJSON *told = jobs_tell(queue, id);
- *     jobs_expire(queue);                now and then
+ *     jobs_expire(queue);                regularly
  *     jobs_close(queue);                 stops the work
  *
- * May be called from any thread. There is one queue in a process: the library asks whether to stop without a context.
- */
+ * All functions may be called from any thread. There is one queue in a process, since the library's stop callback has
+ * no context. */
 #ifndef MERLIN_SERVE_JOBS_JOBS_H
 #define MERLIN_SERVE_JOBS_JOBS_H
 
@@ -23,9 +23,9 @@ typedef struct jobs_params {
     const store *store;
     work_limits limits;
     size_t most_waiting;
-    size_t most_kept;    /* ended jobs; when there are more, the oldest go first */
-    uint64_t most_bytes; /* of all their results; likewise */
-    double keep;         /* seconds for which an ended job stays */
+    size_t most_kept;    /* number of ended jobs that are kept; the oldest are removed first */
+    uint64_t most_bytes; /* size of all their results; likewise */
+    double keep;         /* seconds for which an ended job is kept */
 } jobs_params;
 
 status jobs_open(const jobs_params *params, jobs **out);
@@ -33,25 +33,25 @@ void jobs_close(jobs *q);
 
 typedef enum jobs_answer {
     JOBS_TAKEN,
-    JOBS_REFUSED, /* what was sent is wrong: status_message() says how */
-    JOBS_FULL,    /* too many wait */
-    JOBS_NONE,    /* the job that its field "job" names is not there, or has not ended well */
-    JOBS_BROKEN,  /* the server cannot: status_message() */
+    JOBS_REFUSED, /* the form is wrong: status_message() has the reason */
+    JOBS_FULL,    /* too many jobs are waiting */
+    JOBS_NONE,    /* the job named by its field "job" does not exist, or has not succeeded */
+    JOBS_BROKEN,  /* an error of the server: status_message() */
 } jobs_answer;
 
-/* Takes the form over where it answers JOBS_TAKEN; id is that of the form. */
+/* Adds a job, and takes the form over if the result is JOBS_TAKEN; id is that of the form. */
 jobs_answer jobs_add(jobs *q, const work_kind *kind, form *f, char id[STORE_ID]);
-/* Tells whether another would be taken. */
+/* Tells whether another job would be accepted. */
 bool jobs_have_room(jobs *q);
-/* What is told of a job; NULL: there is none. */
+/* Returns the state of a job as JSON; NULL: there is none. */
 cJSON *jobs_tell(jobs *q, const char *id);
-/* Stops a job's work, and removes it with its files. Returns false where there is none. */
+/* Stops a job, and removes it with its files. Returns false if there is none. */
 bool jobs_remove(jobs *q, const char *id);
-/* Opens one of the files that came of a job for reading; -1: there is none. */
+/* Opens one of a job's results for reading; -1: there is none. */
 int jobs_open_file(jobs *q, const char *id, const char *name, uint64_t *bytes);
-/* Removes what has been kept for long enough. */
+/* Removes jobs that have been kept long enough. */
 void jobs_expire(jobs *q);
-/* Adds how many wait, and what is kept. */
+/* Adds the number of waiting jobs, and of those that are kept. */
 void jobs_put(jobs *q, cJSON *to);
 
 #endif

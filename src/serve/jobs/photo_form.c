@@ -113,7 +113,7 @@ status photo_form_estimate(const work_context *w, const merlin_params *params, m
     status s = photo_form_read(w, &params->hint, &photo, &object);
     if (s != OK) return s;
     (void)merlin_shot_read(photo_path(w, path), &own.shot);
-    memset(&own.hint, 0, sizeof own.hint); /* it has done its work */
+    memset(&own.hint, 0, sizeof own.hint); /* it is not needed any more */
     own.stop = w->stop;
     own.progress = w->progress;
     own.progress_context = w->progress_context;

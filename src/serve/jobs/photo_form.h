@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* A photograph with its mask as clients send them, and how it is taken apart: the fields "photo", "mask", "point",
- * "box", "size", "views", "fov", "flash" and "exposure". */
+/* A client's photograph with its mask, and the options of its estimate: the fields "photo", "mask", "point", "box",
+ * "size", "views", "fov", "flash" and "exposure". */
 #ifndef MERLIN_SERVE_JOBS_PHOTO_FORM_H
 #define MERLIN_SERVE_JOBS_PHOTO_FORM_H
 
@@ -23,10 +23,10 @@
 status photo_form_params(const form *f, merlin_params *params);
 status photo_form_hint(const form *f, merlin_hint *hint);
 
-/* Reads the photograph and finds its object: by the mask that was sent, which may be smaller than the photograph, else
- * by its alpha, else by the hint. Both are empty after a failure. */
+/* Reads the photograph and finds its object: by the client's mask, which may be smaller than the photograph, else by
+ * its alpha, else by the hint. Both are empty after a failure. */
 status photo_form_read(const work_context *w, const merlin_hint *hint, merlin_image *photo, merlin_object *object);
-/* The same, and makes its maps. */
+/* Does the same, and estimates its maps. */
 status photo_form_estimate(const work_context *w, const merlin_params *params, merlin_maps *maps);
 
 #endif

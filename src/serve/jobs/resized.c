@@ -11,7 +11,7 @@ static status make(merlin_image *image, int width, int height, int channels)
     return image->data ? OK : fail(MERLIN_NO_MEMORY, "no memory for a picture of %d x %d pixels", width, height);
 }
 
-/* The first of `size` pixels that belongs to the at-th of `parts` blocks. */
+/* Returns the first of `size` pixels in block number `at` of `parts`. */
 static int edge(int at, int parts, int size)
 {
     return (int)((long long)at * size / parts);
@@ -43,7 +43,8 @@ status resized_reduce(const merlin_image *image, int side, merlin_image *out)
     return s;
 }
 
-/* Where the centre of the at-th of `to` pixels lies among `from`: between which two, and how far. */
+/* Finds the two of `from` pixels between which the centre of pixel `at` of `to` lies, and returns its position between
+ * them. */
 static float between(int at, int to, int from, int *first, int *second)
 {
     const double place = fmin(fmax((at + 0.5) * from / to - 0.5, 0), from - 1);

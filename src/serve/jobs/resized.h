@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Pictures brought to another size: a photograph to one that a page can show, a mask that was painted on that back. */
+/* Resizes pictures: a photograph for display on a page, and a mask painted on that back to the photograph's size. */
 #ifndef MERLIN_SERVE_JOBS_RESIZED_H
 #define MERLIN_SERVE_JOBS_RESIZED_H
 
@@ -8,8 +8,8 @@
 
 /* Makes a copy of at most `side` pixels a side, each the mean of a block. */
 status resized_reduce(const merlin_image *image, int side, merlin_image *out);
-/* Enlarges a picture of the same shape, up to rounding, to another's size by linear interpolation, in place; one that
- * has the size is left as it is. MERLIN_BAD_INPUT where the shapes differ, or it is larger. */
+/* Enlarges a picture of the same aspect ratio, within rounding, to another's size by linear interpolation, in place;
+ * one of that size is unchanged. MERLIN_BAD_INPUT if the ratios differ, or it is larger. */
 status resized_enlarge(merlin_image *mask, int width, int height);
 
 #endif

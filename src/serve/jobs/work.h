@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The kinds of work that a client can ask for. Each checks what was sent at once, so that a mistake is told with the
- * answer to the upload, and works when its turn comes.
+/* The kinds of work that a client can request. Each checks the form at once, so that errors are in the response to the
+ * upload, and runs when its turn comes.
  *
  *     const work_kind *kind = work_find("estimate");
  *     void *request = NULL;
@@ -16,7 +16,7 @@
 #include "merlin/merlin.h"
 #include "serve/jobs/form.h"
 
-/* What holds for all work of a server. */
+/* Limits of all work of a server. */
 typedef struct work_limits {
     double megapixels; /* of a photograph, and of one picture of a capture */
     int pictures;      /* of a capture, and lights of a relighting */
@@ -30,10 +30,10 @@ typedef struct work_context {
     merlin_progress progress;
     void *progress_context;
     int (*stop)(void);
-    cJSON *report; /* of the job, for what the files do not say */
+    cJSON *report; /* report of the job, for facts that are not in the files */
 } work_context;
 
-/* A stage as progress tells it, and its share of the time. */
+/* A stage of the progress, and its share of the time. */
 typedef struct work_stage {
     const char *name;
     float share;
@@ -42,11 +42,10 @@ typedef struct work_stage {
 typedef struct work_kind {
     const char *name;
     const work_stage *stages; /* in their order, ended by one without a name */
-    /* *request is malloc'ed, and is freed by free. MERLIN_WRONG_USE names the field. */
+    /* *request is malloc'ed and freed by free. MERLIN_WRONG_USE names the field. */
     status (*check)(const form *f, const work_limits *limits, void **request);
     status (*run)(const work_context *w, const void *request);
-    const char
-        *uses; /* the file of an earlier job's results that the field "job" brings among the uploads; NULL: none */
+    const char *uses; /* file of an earlier job's results that the field "job" adds to the uploads; NULL: none */
 } work_kind;
 
 #endif

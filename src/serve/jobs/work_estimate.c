@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* A photograph to maps: the files of merlin estimate, and the page that lights them. */
+/* From a photograph to maps: the files of merlin estimate, and the viewer's page. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,7 +27,7 @@ static status check(const form *f, const work_limits *limits, void **request)
     return s == OK ? form_flag(f, "view", &r->view) : s;
 }
 
-/* The photograph's name without its ending. */
+/* Copies the photograph's name without its ending. */
 static void name_of(const form *f, char name[SAFE_NAME])
 {
     memcpy(name, form_find_file(f, "photo")->name, SAFE_NAME);

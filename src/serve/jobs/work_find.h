@@ -5,7 +5,7 @@
 
 #include "serve/jobs/work.h"
 
-/* NULL: there is no such work. */
+/* Returns the kind of this name, or NULL. */
 const work_kind *work_find(const char *name);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The object of a photograph, found before anything else is made of it: mask.png and photo.png, both of a size that a
- * page can show, on which a person corrects the mask. */
+/* Finds the object of a photograph before any estimate: mask.png and photo.png, both small enough for display, on which
+ * a person corrects the mask. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -40,7 +40,7 @@ static status write_reduced(const work_context *w, const merlin_image *image, in
     return s;
 }
 
-/* A picture of sRGB values would bend coverage between none and all. */
+/* Undoes the conversion from sRGB, which would change partial coverage. */
 static void bend_back(merlin_image *mask)
 {
     for (size_t i = 0, n = (size_t)mask->width * mask->height; i < n; i++)

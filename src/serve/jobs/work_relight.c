@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The object in other light: maps of an earlier job, of a file, or of a photograph that is taken apart first, to a
- * picture for each lamp, in a room, or by the light that was found. */
+/* The object in other light: from maps of an earlier job, of a file, or of a photograph that is estimated first, to a
+ * picture for each lamp, in a room, or in the estimated light. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,11 +19,11 @@ typedef struct relight_request {
     float lights[MOST_LIGHTS][3];
     int light_count;
     float rotate, room_exposure;
-    int found, side; /* side 0: of the photograph's size */
+    int found, side; /* side 0: the photograph's size */
     merlin_relighting how;
 } relight_request;
 
-/* ---- what is asked for ---- */
+/* ---- options ---- */
 
 static status read_lights(const form *f, relight_request *r)
 {
@@ -91,7 +91,7 @@ static status check(const form *f, const work_limits *limits, void **request)
 
 /* ---- the maps ---- */
 
-/* A file that was sent has its client's name, and is read by its own. */
+/* Renames an uploaded file, which has its client's name, to the reader's. */
 static status name_maps(const work_context *w)
 {
     const form_file *sent = form_find_file(w->form, "maps");
@@ -123,7 +123,7 @@ typedef struct relight_work {
     const relight_request *request;
     const merlin_maps *maps;
     const merlin_environment *room;
-    merlin_relighter *relighter; /* of the square, of a given size; else NULL */
+    merlin_relighter *relighter; /* of the square, if a size is given; else NULL */
 } relight_work;
 
 static status make(const relight_work *k, const float *light, merlin_image *out)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Pictures of an object under many lights to its surface. */
+/* From pictures of an object under many lights to its surface. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,7 +8,8 @@
 #include "serve/jobs/mesh_files.h"
 #include "serve/jobs/work_kinds.h"
 
-/* Names are checked as they are read: a list of another data set's layout, sent as a picture, would lead elsewhere. */
+/* Accepted endings. Names are checked when files are read: a list of another data set's layout, uploaded as a picture,
+ * could contain paths. */
 static const char *const picture_endings[] = {".png",  ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".heic", ".heif",
                                               ".avif", ".exr", ".hdr",  ".bmp", ".pgm",  ".ppm",  ".pfm",  ".cr2",
                                               ".cr3",  ".nef", ".arw",  ".dng", ".raf",  ".rw2",  ".orf",  NULL};
@@ -19,7 +20,7 @@ typedef struct stereo_request {
     float field_of_view, distance;
 } stereo_request;
 
-/* ---- what is asked for ---- */
+/* ---- options ---- */
 
 static status check_pictures(const form *f, const work_limits *limits)
 {
@@ -77,7 +78,7 @@ static status check(const form *f, const work_limits *limits, void **request)
 
 /* ---- the work ---- */
 
-/* The path of a file that was sent, or NULL. */
+/* Returns the path of an uploaded file, or NULL. */
 static const char *path_of(const work_context *w, const char *key, char path[PATH_MAX])
 {
     const form_file *file = form_find_file(w->form, key);

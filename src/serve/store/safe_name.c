@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Room that is kept for a number in front, and how much of a long name is its end. */
+/* Length reserved for a number in front, and length of the end of a long name that is kept. */
 enum { FOR_NUMBER = 12, END = 32 };
 
 static bool is_harmless(unsigned char c)

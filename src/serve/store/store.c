@@ -31,7 +31,7 @@ static int remove_one(const char *path, const struct stat *s, int kind, struct F
     (void)s;
     (void)where;
     (void)(kind == FTW_DP ? rmdir(path) : unlink(path));
-    return 0; /* goes on with the rest */
+    return 0; /* continues with the rest */
 }
 
 /* Removes a folder with all that is in it. Links are removed, not followed. */
@@ -41,8 +41,8 @@ static void remove_tree(const char *path)
     (void)nftw(path, remove_one, OPEN_FOLDERS, FTW_DEPTH | FTW_PHYS);
 }
 
-/* Tells whether a folder is this user's, and its server is dead: nobody holds its lock. One without a lock is just
- * being made, or was left by a server that was killed while it made it. */
+/* Tells whether a folder is this user's, and its server has ended: nobody holds its lock. One without a lock is just
+ * being created, or its server was killed meanwhile. */
 static bool is_left(int parent, const char *name)
 {
     enum { MAKING = 60 }; /* seconds */

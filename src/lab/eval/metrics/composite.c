@@ -18,7 +18,7 @@ typedef struct thing {
     vec3 color;
 } thing;
 
-/* Everything that is drawn by lot before a pixel is made. */
+/* Everything that is drawn at random before a pixel is made. */
 typedef struct stage_set {
     composite_kind kind;
     uint32_t seed;
@@ -26,7 +26,7 @@ typedef struct stage_set {
     vec3 wall, floor, ambient; /* albedo, albedo, radiance of white */
     float wall_distance, floor_height, horizon;
     bool has_floor;
-    float tilt_x, tilt_y; /* how much brighter the wall is to the right and below */
+    float tilt_x, tilt_y; /* increase of the wall's brightness to the right and downwards */
     float grain, grain_stretch, grain_depth;
     float shadow_x, shadow_y, shadow_depth;
     float white, noise;
@@ -47,7 +47,7 @@ void composite_free(composite *c)
     img_free(&c->mask);
 }
 
-/* ---- what is drawn by lot ---- */
+/* ---- random choices ---- */
 
 static vec3 draw_color(rng *r, float least, float most)
 {
@@ -87,7 +87,7 @@ static void draw_things(rng *r, stage_set *set)
     }
 }
 
-/* The lowest row of the object in parts of the frame's side. */
+/* Returns the lowest row of the object as a share of the frame's side. */
 static float base_of(const sample *s)
 {
     for (int y = s->mask.height - 1; y >= 0; y--)
@@ -96,7 +96,7 @@ static float base_of(const sample *s)
     return 1;
 }
 
-/* An object that its frame cuts off cannot be shown smaller. */
+/* Tells whether the frame cuts the object off, which then cannot be shown smaller. */
 static bool is_cut(const img *mask)
 {
     int last = mask->width - 1;
@@ -164,7 +164,7 @@ static stage_set draw_set(const sample *s, uint64_t seed, composite_kind kind)
 
 /* ---- the background ---- */
 
-/* Radiance of a matte surface at p under flash and room. */
+/* Returns the radiance of a matte surface at p under flash and room. */
 static vec3 lit(const stage_set *set, vec3 albedo, vec3 p, vec3 normal)
 {
     float square = vec3_dot(p, p), distance = sqrtf(square);
@@ -191,7 +191,7 @@ static const thing *thing_at(const stage_set *set, float x, float y)
     return NULL;
 }
 
-/* Radiance behind the object at a place of the picture, whose side is 1. */
+/* Returns the radiance behind the object at a place of the picture, whose side is 1. */
 static vec3 background_at(const stage_set *set, float x, float y)
 {
     const float half = tanf(PI / 6);
@@ -235,7 +235,7 @@ static status blur(img *image, int radius)
 
 /* ---- the object ---- */
 
-/* From the sample's frame to the picture's. */
+/* Resamples from the sample's frame to the picture's. */
 static status place(const img *from, const stage_set *set, img *out)
 {
     float side = (float)from->width;
@@ -247,11 +247,11 @@ static status place(const img *from, const stage_set *set, img *out)
                      out);
     img_free(&small);
     for (size_t i = 0; s == OK && i < img_value_count(out); i++)
-        out->data[i] = fmaxf(out->data[i], 0); /* enlarging rings */
+        out->data[i] = fmaxf(out->data[i], 0); /* enlarging causes ringing */
     return s;
 }
 
-/* Flash and room on the object, times coverage. */
+/* Renders flash and room light on the object, times coverage. */
 static status light_object(const sample *s, const stage_set *set, img *out)
 {
     status st = img_copy(out, &s->direct);
@@ -264,7 +264,7 @@ static status light_object(const sample *s, const stage_set *set, img *out)
     return OK;
 }
 
-/* The shadow beside the object and, where it stands on something, the dark below it. */
+/* Darkens the background by the object's shadow and, if it stands on something, below it. */
 static status cast_shadow(const img *mask, const stage_set *set, img *background)
 {
     img soft = {0};
@@ -279,7 +279,7 @@ static status cast_shadow(const img *mask, const stage_set *set, img *background
     return s;
 }
 
-/* As a camera does: white, noise, 8 bits. */
+/* Converts to a camera's values: white, noise, 8 bits. */
 static void expose(const stage_set *set, uint64_t seed, img *photo)
 {
     const float *values = srgb_decode_table8();

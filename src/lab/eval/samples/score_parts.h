@@ -11,32 +11,32 @@
 /* Lights that are drawn for each sample. */
 enum { EVAL_LIGHTS = 4 };
 
-/* What an evaluation keeps from sample to sample. */
+/* State that an evaluation keeps between samples. */
 typedef struct eval_scorer {
     merlin_model *model;
-    bool raw; /* the network alone is measured, else what merlin_estimate and merlin_relight make of it */
+    bool raw; /* whether the network alone is measured, else merlin_estimate and merlin_relight */
     int views;
     eval_means means;
-    sheet_rows *sheet;   /* NULL: no picture wanted */
+    sheet_rows *sheet;   /* NULL: no picture requested */
     float white;         /* radiance at which the photograph saturates */
-    int given;           /* set of EVAL_GIVEN_*: true maps that take the place of the raw ones */
-    size_t environments; /* samples that are still to be relit by environments */
+    int given;           /* set of EVAL_GIVEN_*: true maps that replace the raw ones */
+    size_t environments; /* number of samples still to be relit by environments */
 } eval_scorer;
 
-/* One sample on its way through. */
+/* One sample during its evaluation. */
 typedef struct eval_subject {
     const sample *sample;
-    img mask; /* 1 where the object is, else 0: what figures of maps count */
+    img mask; /* 1 where the object is, else 0: the pixels that count for maps */
     eval_photo photo;
-    img image; /* its radiance, saturated at 1 as everything that is compared */
+    img image; /* its radiance, saturated at 1 like everything that is compared */
     surface truth, inflated;
     merlin_maps maps;   /* the model's, in the photograph's frame */
-    surface found;      /* the same in the sample's */
+    surface found;      /* the same in the sample's frame */
     network_look *look; /* of a raw model with a relighting decoder; else NULL */
     eval_scores scores;
 } eval_subject;
 
-/* The middle, by the logarithm, of what training adds of a sample's environment. */
+/* Geometric mean of the strengths of a sample's environment in training. */
 #define EVAL_ENVIRONMENT_STRENGTH 0.316f
 
 static inline const model_config *eval_config(const eval_scorer *e)
@@ -51,7 +51,7 @@ static inline float eval_exposure(const eval_subject *on)
     return on->photo.white / on->maps.gain;
 }
 
-/* Returns a trivial answer's maps as the sample's camera sees them; its images are borrowed. */
+/* Returns a trivial baseline's maps as the sample's camera sees them; its images are borrowed. */
 static inline surface eval_shown(const eval_subject *on, const surface *trivial)
 {
     surface shown = *trivial;
@@ -60,27 +60,27 @@ static inline surface eval_shown(const eval_subject *on, const surface *trivial)
     return shown;
 }
 
-/* The maps' errors by region. */
+/* Scores the maps' errors by region. */
 void eval_score_regions(const eval_scorer *e, eval_subject *on);
 
-/* Rows of models of setting B alone, and of the surroundings what a trivial answer takes them for: the data's mean, at
- * the strength they have in the picture, in sh; NULL in setting A. */
+/* Scores rows that only models of setting B have, and the environment, whose trivial baseline in sh is the data's mean
+ * at the strength that the picture has; NULL in setting A. */
 status eval_score_both_lights(eval_scorer *e, eval_subject *on);
 const float (*eval_mean_surroundings(const eval_scorer *e, float sh[9][3]))[3];
 
-/* Rows of relighting by environments. */
+/* Scores rows of relighting by environments. */
 status eval_score_environment(eval_scorer *e, eval_subject *on);
 
-/* Scores a trivial answer's picture, which is its maps rendered, against the target. */
+/* Scores the rendering of a trivial baseline's maps against the target. */
 status eval_score_trivial(eval_subject *on, const surface *maps, eval_answer answer, eval_row row,
                           const illumination *light, const img *target);
-/* Scores a picture that the product made, of the photograph's size and exposure. */
+/* Scores a picture of the product, of the photograph's size and exposure. */
 status eval_score_picture(eval_subject *on, eval_row row, const merlin_image *picture, const img *target);
-/* Scores the trivial answers' pictures, and the photograph itself, against the target. */
+/* Scores the trivial baselines' pictures, and the photograph itself, against the target. */
 status eval_score_answers(const eval_scorer *e, eval_subject *on, eval_row row, const illumination *light,
                           const img *target);
-/* Scores the maps rendered under a light, and what a raw model's relighting decoder makes of it, against the true maps
- * rendered, without shadows and bounces all. */
+/* Scores the maps rendered under a light, and a raw model's relighting decoder, against the true maps rendered, all
+ * without shadows and bounces. */
 status eval_score_rendered(eval_scorer *e, eval_subject *on, const illumination *light, eval_row decoder,
                            eval_row brdf);
 

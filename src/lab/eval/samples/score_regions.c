@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Errors of the maps by what the photograph shows of a pixel: where gloss is not seen, nothing tells roughness. */
+/* Errors of the maps by what the photograph shows at a pixel: where gloss is not visible, roughness cannot be
+ * estimated. */
 #include "lab/eval/metrics/metrics.h"
 #include "lab/eval/samples/score_parts.h"
 #include "optics/camera.h"
 
-/* From which share of the flash's light that gloss returns the regions behind EVAL_BURNT_OUT begin. */
+/* Least share of gloss in the flash's light for each region after EVAL_BURNT_OUT. */
 static const float gloss_from[EVAL_REGIONS - 1] = {0, 0.03f, 0.1f, 0.3f};
 
 static bool is_burnt_out(const eval_subject *on, size_t i)
@@ -13,7 +14,7 @@ static bool is_burnt_out(const eval_subject *on, size_t i)
     return photo[0] >= 1 || photo[1] >= 1 || photo[2] >= 1;
 }
 
-/* By the true maps. */
+/* Returns the share of gloss by the true maps. */
 static float gloss_share(const eval_subject *on, size_t i)
 {
     const sample *s = on->sample;
@@ -42,7 +43,7 @@ static int region_of(const eval_subject *on, size_t i)
     return region;
 }
 
-/* Mean over the channels. */
+/* Returns the mean over the channels. */
 static double squared_error(const img *a, const img *b, size_t i)
 {
     const size_t channels = (size_t)a->channels;

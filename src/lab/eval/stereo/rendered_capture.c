@@ -11,12 +11,12 @@
 #include "optics/camera.h"
 
 enum { MOST_POINTS = 16 };
-/* Of what is seen at a lower cosine, a pixel shows too little. */
+/* Least cosine to the line of sight; more grazing surfaces cover too little of a pixel. */
 static const real least_facing = (real)0.05;
-/* As distant as the sun to an object of size 1. */
+/* Distance of the lights that makes them as parallel as the sun's for an object of size 1. */
 static const float far_away = 500;
 
-/* What all rows share, */
+/* Data that all rows share. */
 typedef struct job {
     const rendered *how;
     const scene_object *object;
@@ -25,14 +25,14 @@ typedef struct job {
     status result;
 } job;
 
-/* and what is one thread's. */
+/* Data of one thread. */
 typedef struct rendering {
     const rendered *how;
     merlin_capture *capture;
     trace_scene scene;
     sequence spread;
     rng random;
-    uint32_t path; /* the next one's number */
+    uint32_t path; /* index of the next one */
 } rendering;
 
 /* The points of one pixel. */
@@ -44,7 +44,7 @@ typedef struct sight {
 
 /* ---- lights ---- */
 
-/* Two rings and a few between: what capture domes have. */
+/* Returns a light of two rings and a few between, as capture domes have. */
 static vec3 distant_light(int i, int count)
 {
     int inner = count / 3;
@@ -54,7 +54,7 @@ static vec3 distant_light(int i, int count)
     return vec3_make(sinf(tilt) * cosf(phi), sinf(tilt) * sinf(phi), cosf(tilt));
 }
 
-/* Rings of LEDs about the camera that look at the object, one to two of its sizes away. */
+/* Returns an LED of rings around the camera that point at the object, at one to two of its sizes. */
 static merlin_light led(int i, int count)
 {
     float phi = 6.2831853f * (float)i / (float)count * 2, ring = i % 2 ? 0.3f : 0.65f;
@@ -63,7 +63,7 @@ static merlin_light led(int i, int count)
     return light;
 }
 
-/* On a spiral over the half of the sphere of radius 1 about (0, 0, -1) that faces the camera. */
+/* Returns a position on a spiral over the half of the sphere of radius 1 around (0, 0, -1) that faces the camera. */
 static vec3 bulb(int i, int count)
 {
     float z = ((float)i + 0.5f) / (float)count, across = sqrtf(1 - z * z), phi = 2.3999632f * (float)i;
@@ -91,7 +91,7 @@ static merlin_light light_of(const rendered *how, int i)
 
 /* ---- one pixel ---- */
 
-/* Of the light that arrives along l: what goes toward the view. */
+/* Returns the share of the light from l that is reflected toward the view. */
 static vec3 reflected(const rendered *how, const scene_surface *at, vec3 view, vec3 l)
 {
     bool lambert = how->matte || how->phong > 0;
@@ -119,7 +119,7 @@ static vec3 by_way_of_surfaces(rendering *r, const scene_surface *at, vec3 view,
     return vec3_add(bounce[0][0], bounce[0][1]);
 }
 
-/* Radiance by one light. */
+/* Returns the radiance by one light. */
 static vec3 radiance(rendering *r, const scene_surface *at, vec3 view, const merlin_light *from)
 {
     bool near = is_near(r->how);
@@ -129,7 +129,7 @@ static vec3 radiance(rendering *r, const scene_surface *at, vec3 view, const mer
     if (is_lit(r, at, l, vec3_length(to))) sum = vec3_scale(reflected(r->how, at, view, l), power);
     if (r->how->paths > 0)
         sum = vec3_add(sum, by_way_of_surfaces(r, at, view, position, near ? 1 : far_away * far_away));
-    /* the lobe is applied to all that the LED sends, as seen from the surface */
+    /* the lobe is applied to all of the LED's light, as seen from the surface */
     return r->how->leds ? vec3_scale(sum, powf(fmaxf(-vec3_dot(l, vec3_of(from->direction)), 0), from->lobe)) : sum;
 }
 
@@ -148,7 +148,7 @@ static void apply_material(const rendered *how, scene_surface *at)
     if (how->grey) at->albedo = vec3_make(at->albedo.y, at->albedo.y, at->albedo.y);
 }
 
-/* False if a part of the pixel shows no object. */
+/* Samples a pixel; returns false if a part of it shows no object. */
 static bool look(rendering *r, int i, int j, sight *out)
 {
     int strata = r->how->strata > 0 ? r->how->strata : 1;
@@ -206,7 +206,7 @@ static void render_pixel(rendering *r, int i, int j)
     }
 }
 
-/* ---- all of them ---- */
+/* ---- the whole ---- */
 
 static void render_row(rendering *r, int j)
 {

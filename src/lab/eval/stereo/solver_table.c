@@ -13,7 +13,7 @@
 
 enum { CAPTURES = 4, TIMED_RUNS = 3 };
 static const double timed_pixels = 20000;
-/* From polished to satin; the objects take them in turn. */
+/* Roughnesses from polished to satin, which the objects have in turn. */
 static const float roughness[] = {0.15f, 0.25f, 0.35f, 0.5f};
 enum { ROUGHNESSES = sizeof roughness / sizeof *roughness };
 
@@ -25,7 +25,7 @@ typedef struct evaluation {
     size_t done;
 } evaluation;
 
-/* Half as pale, so that highlights stand out and are not clipped. */
+/* Sets up a glossy object, half as pale, so that highlights stand out and are not clipped. */
 static rendered scene_of(const evaluation *e)
 {
     return (rendered){.size = e->options->size,
@@ -111,7 +111,7 @@ static status measure_all(evaluation *e)
 {
     rendered smooth = scene_of(e), polished = scene_of(e), leds = scene_of(e);
     smooth.matte = smooth.unshadowed = true;
-    smooth.strata = 1; /* a pixel's mean of several normals is no one normal's brightness */
+    smooth.strata = 1; /* a pixel's mean over several normals is not the brightness of one normal */
     leds.leds = true;
     leds.fov = CAMERA_FOV;
     leds.exposure = 0.4f;
@@ -126,7 +126,7 @@ static status measure_object(evaluation *e, size_t index)
 {
     status s = scene_object_generate(e->options->seed, index, CAMERA_FOV, &e->object);
     if (s != OK) return s;
-    e->object.material->bumps = 0; /* relief finer than a pixel has no one normal */
+    e->object.material->bumps = 0; /* relief finer than a pixel has no single normal */
     snprintf(e->row->name, sizeof e->row->name, "%zu %s", index, e->object.shape);
     e->row->roughness = roughness[index % ROUGHNESSES];
     s = measure_all(e);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* How right the solvers of photometric stereo are, and how fast, on captures of this project's own objects.
+/* Accuracy and speed of the solvers of photometric stereo on captures of this project's own objects.
  *
  *     solver_options options = {.seed = 2000, .count = 8, .size = 224};
  *     solver_table table;
@@ -7,9 +7,9 @@
  *     if (s == OK) solver_table_print(&table, stdout);
  *     solver_table_free(&table);
  *
- * Each object is rendered four times: under 50 distant lights, as Lambert's law has it without cast shadows, and glossy
- * with them; and under 50 LEDs one to two of its sizes away with cast shadows, matte and glossy. What the columns are
- * is in docs/notes/solvers.md. */
+ * Each object is rendered four times: under 50 distant lights, Lambertian without cast shadows, and glossy with them;
+ * and under 50 LEDs at one to two of its sizes with cast shadows, matte and glossy. docs/notes/solvers.md describes the
+ * columns. */
 #ifndef MERLIN_LAB_EVAL_STEREO_SOLVER_TABLE_H
 #define MERLIN_LAB_EVAL_STEREO_SOLVER_TABLE_H
 
@@ -24,11 +24,11 @@ enum { SOLVER_LIGHTS = 50 };
 
 typedef enum solver_figure {
     SOLVER_LAMBERT_LS, /* mean angle to the true normals, degrees */
-    SOLVER_GLOSSY_LS,  /* as all that follow, unless they say otherwise */
+    SOLVER_GLOSSY_LS,  /* as all others, unless stated otherwise */
     SOLVER_GLOSSY_ROBUST,
     SOLVER_ROBUST_TIME, /* seconds for 20,000 pixels */
     SOLVER_NEAR_MATTE,
-    SOLVER_NEAR_MATTE_DEPTH, /* mean share of the depth by which it is off, its scale aligned */
+    SOLVER_NEAR_MATTE_DEPTH, /* mean relative error of the depth after aligning its scale */
     SOLVER_NEAR_GLOSSY,
     SOLVER_NEAR_GLOSSY_DEPTH,
     SOLVER_FIGURES
@@ -61,7 +61,7 @@ void solver_table_free(solver_table *t);
 double solver_table_mean(const solver_table *t, solver_figure figure);
 
 void solver_table_print(const solver_table *t, FILE *stream);
-/* malloc'ed; NULL if memory ran out. */
+/* Returns the JSON text, malloc'ed; NULL without memory. */
 char *solver_table_json(const solver_table *t);
 
 #endif

@@ -14,7 +14,7 @@
 #include "photo_stereo/near_capture.h"
 
 enum { MOST_OBJECTS = 1000 };
-/* What a camera would record as white: the middle of the training data's sensors (estimate/surface/exposure.h). */
+/* Radiance that a camera records as white: the middle of the training data's sensors (estimate/surface/exposure.h). */
 static const float PHOTO_WHITE = 1.568f;
 
 /* ---- which ---- */
@@ -115,7 +115,7 @@ static status read_sample(const char *path, stereo_object *out)
 
 /* ---- a capture on disk ---- */
 
-/* How far a light is from being a flash beside the lens. */
+/* Returns the distance of a light from a flash beside the lens. */
 static float distance_from_flash(const merlin_capture *c, int i)
 {
     return c->lighting == MERLIN_NEAR_LIGHTS ? vec3_length(vec3_of(c->light[i].position)) : -c->light[i].direction[2];

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* stereo_table.h's table as text and as JSON. */
+/* Prints stereo_table.h's table as text and as JSON. */
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 
 enum { LABEL_WIDTH = 20, CELL_WIDTH = 9 };
 
-/* "3 superquadric" as "3" above "superqua": two lines of heading, in cells of one width. */
+/* Prints headings such as "3" above "superqua" for "3 superquadric": two lines of cells of one width. */
 static void print_heading(const stereo_table *t, FILE *stream)
 {
     for (int line = 0; line < 2; line++) {
@@ -48,7 +48,7 @@ static void print_row(const stereo_table *t, stereo_row row, const char *label, 
     fputc('\n', stream);
 }
 
-/* What the row's pictures are worth beside the single one, on the objects that were solved. */
+/* Prints the gain of the row's pictures over the single one, on the objects that were solved. */
 static void print_comparison(const stereo_table *t, stereo_row row, const char *label, FILE *stream)
 {
     double change = 0;

@@ -52,12 +52,13 @@ typedef struct stereo_options {
 status stereo_table_run(const stereo_options *options, stereo_table *out);
 void stereo_table_free(stereo_table *t);
 
-/* The mean over the objects that were solved; NAN if none. */
+/* Returns the mean over the objects that were solved; NAN if there are none. */
 double stereo_table_mean(const stereo_table *t, stereo_row row);
 
-/* In the layout of the paper's table, and one line each on what relit pictures add to the single one. */
+/* Prints the table in the layout of the paper's, and one line each about the gain of relit pictures over the single
+ * one. */
 void stereo_table_print(const stereo_table *t, FILE *stream);
-/* malloc'ed; NULL if memory ran out. */
+/* Returns the JSON text, malloc'ed; NULL without memory. */
 char *stereo_table_json(const stereo_table *t);
 
 #endif
