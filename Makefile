@@ -3,7 +3,7 @@
 MERLIN = build/release/merlin
 OUT = out/demo
 
-.PHONY: all build demo install wheel blender test test-debian product asan debug check format fuzz setup-build setup-test setup-check clean
+.PHONY: all build demo install wheel deb test-deb blender test test-debian product asan debug check format fuzz setup-build setup-test setup-check clean
 
 all: build
 
@@ -37,6 +37,14 @@ wheel: setup-test
 	@mkdir -p build/wheel
 	/usr/bin/python3 -m pip wheel -q --no-index --no-deps --no-build-isolation --disable-pip-version-check -w build/wheel ./python
 	@ls build/wheel/*.whl
+
+# A package for this Debian or Ubuntu: build/merlin_VERSION_ARCH.deb.
+deb: setup-build
+	@tools/make-deb
+
+# That package in a bare system of its own, as root.
+test-deb: deb
+	@tools/test-deb
 
 # The Blender add-on as a zip, the same wherever it is made.
 blender:

@@ -287,7 +287,8 @@ status photo_take_share(const char *text, void *into)
 /* Finds NAME.safetensors among the program's own weights; *path is NULL if there is none. */
 static status find_shipped(const char *name, char **path)
 {
-    static const char *const places[] = {"models", "../models", "../../models", "../share/merlin/models"};
+    static const char *const places[] = {"models", "../models", "../../models", "../share/merlin/models",
+                                         "../../../share/merlin/models"};
     char folder[PATH_MAX];
     *path = NULL;
     if (!file_program_folder(folder)) return OK;
