@@ -214,7 +214,7 @@ static void a_lone_pixel_is_fitted_again_from_its_neighbours(void **state)
     memcpy(before, shading, p.pixel_count * sizeof *shading);
     size_t lone = p.pixel_count / 2;
     shading[lone].normal = vec3_make(0.8f, 0, 0.6f);
-    assert_int_equal(pst_field_mend(&f, 1), OK);
+    assert_int_equal(pst_field_replace_outliers(&f, 1), OK);
     for (size_t i = 0; i < p.pixel_count; i++)
         assert_true(vec3_dot(shading[i].normal, before[i].normal) > (i == lone ? 0.9998f : 0.999999f));
     free(shading);

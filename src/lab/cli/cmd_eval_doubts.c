@@ -133,7 +133,7 @@ static void pictures_free(pictures *p)
     file_list_free(p->samples, p->count);
 }
 
-static status judge(run *r, const pictures *p)
+static status evaluate(run *r, const pictures *p)
 {
     size_t samples = r->request->count && r->request->count < p->count ? r->request->count : p->count;
     size_t all = p->right.count + p->wrong.count + samples;
@@ -160,7 +160,7 @@ int eval_doubts(int argc, char **argv)
     status s = list_pictures(&r, &all);
     if (s == OK) s = photo_find_models(r.weights, &weights, &flash);
     if (s == OK) s = model_open_pair(weights, flash, &work.model);
-    if (s == OK) s = judge(&work, &all);
+    if (s == OK) s = evaluate(&work, &all);
     merlin_model_close(work.model);
     doubt_table_free(&work.table);
     pictures_free(&all);

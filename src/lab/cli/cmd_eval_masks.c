@@ -122,7 +122,7 @@ static status list_pictures(run *r, char *const *arguments, int count)
     return s;
 }
 
-static status judge(run *r)
+static status evaluate(run *r)
 {
     const request *q = r->request;
     size_t samples = q->count && q->count < r->sample_count ? q->count : r->sample_count;
@@ -144,7 +144,7 @@ int eval_masks(int argc, char **argv)
     cli_catch_interrupts();
     run work = {.request = &r};
     status s = list_pictures(&work, argv, argc);
-    if (s == OK) s = judge(&work);
+    if (s == OK) s = evaluate(&work);
     mask_table_free(&work.table);
     photo_list_free(&work.photos);
     file_list_free(work.samples, work.sample_count);

@@ -329,7 +329,7 @@ static status check_fit(const merlin_capture *c, merlin_calibration *out)
     img outlines = {0};
     status s = outline_picture(&out->brightest, &outlines);
     if (s == OK) s = ball_check(&c->mask, &outlines, out);
-    if (s == OK) s = pst_doubt_copies(c, &out->warnings);
+    if (s == OK) s = pst_check_copies(c, &out->warnings);
     img_free(&outlines);
     return s;
 }

@@ -102,7 +102,7 @@ static bool may_be_the_same(const merlin_capture *c, int j, int k)
     return c->lighting == MERLIN_NEAR_LIGHTS && !(vec3_length(apart) > 1e-3f * vec3_length(vec3_of(a->position)));
 }
 
-status pst_doubt_copies(const merlin_capture *c, warnings *out)
+status pst_check_copies(const merlin_capture *c, warnings *out)
 {
     size_t values = (size_t)c->width * (size_t)c->height * (size_t)c->channels;
     int copies = 0, first = 0, second = 0;
@@ -228,7 +228,7 @@ status pst_doubts(const merlin_capture *c, const merlin_surface *s, warnings *ou
     if (known && c->lighting == MERLIN_DISTANT_LIGHTS) check_directions(c, out);
     if (known && c->lighting == MERLIN_NEAR_LIGHTS) check_positions(c, out);
     if (known && c->lighting == MERLIN_NEAR_LIGHTS) check_unit(c, out);
-    if (result == OK) result = pst_doubt_copies(c, out);
+    if (result == OK) result = pst_check_copies(c, out);
     check_exposure(c, out);
     check_mask(c, out);
     report_noticed(c, s, out);

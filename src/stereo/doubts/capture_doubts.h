@@ -15,6 +15,6 @@
  * distance_unsure and lights_unsure, if they apply. */
 status pst_doubts(const merlin_capture *c, const merlin_surface *s, warnings *out);
 /* Adds only same_pictures, if it applies. */
-status pst_doubt_copies(const merlin_capture *c, warnings *out);
+status pst_check_copies(const merlin_capture *c, warnings *out);
 
 #endif

@@ -15,15 +15,15 @@
 /* Number of pixels that are gathered together, so that a picture's cache lines serve all of them. */
 enum { BLOCK = 32 };
 
-typedef enum field_task { FIT, REFINE, SEARCH, SECOND, PREDICT, SPREAD, MEND, MODEL, FALL_OFF, STORE } field_task;
+typedef enum field_task { FIT, REFINE, SEARCH, SECOND, PREDICT, SPREAD, OUTLIERS, MODEL, FALL_OFF, STORE } field_task;
 
 typedef struct fit_job {
     const pst_field *field;
     field_task task;
-    pst_around around;     /* for spread and mend */
+    pst_around around;     /* for spread and outliers */
     float limit;           /* for search */
-    float contradiction;   /* for mend: cost of differing from all neighbours */
-    pst_shading *next;     /* for spread and mend: results that will replace the field's */
+    float contradiction;   /* for outliers: cost of differing from all neighbours */
+    pst_shading *next;     /* for spread and outliers: results that will replace the field's */
     float *weight, *model; /* for model: padded lights per pixel */
     pst_fall_off *fall;    /* for fall-off */
     merlin_surface *out;   /* for store */
@@ -148,7 +148,7 @@ static void try_neighbours(const fit_job *job, size_t i, const pst_lobe_data *d)
 
 /* Replaces a pixel's result by its neighbours'. Detail of one pixel's size costs much less than the neighbours'
  * surface, and stays. */
-static void mend(const fit_job *job, size_t i, const pst_lobe_data *d)
+static void replace_outlier(const fit_job *job, size_t i, const pst_lobe_data *d)
 {
     const pst_shading *own = &job->field->shading[i];
     pst_majority m;
@@ -180,8 +180,8 @@ static void fit_lobe(const fit_job *job, size_t i, const pst_lobe_data *d, const
     case SPREAD:
         try_neighbours(job, i, d);
         break;
-    case MEND:
-        mend(job, i, d);
+    case OUTLIERS:
+        replace_outlier(job, i, d);
         break;
     case MODEL:
         pst_lobe_weigh(d, lobe_of(f, own), own, job->weight + at, job->model + at);
@@ -235,7 +235,7 @@ static bool concerns(const fit_job *job, size_t i)
     const pst_shading *start[4];
     pst_majority m;
     if (job->task == SEARCH) return job->field->shading[i].cost > job->limit;
-    if (job->task == MEND) return pst_majority_against(&job->around, i, &m);
+    if (job->task == OUTLIERS) return pst_majority_against(&job->around, i, &m);
     return job->task != SPREAD || pst_better_neighbours(&job->around, i, start) > 0;
 }
 
@@ -417,7 +417,7 @@ static float mean_cost(const pst_field *f)
     return (float)(cost / (double)f->count);
 }
 
-status pst_field_mend(const pst_field *f, int sweeps)
+status pst_field_replace_outliers(const pst_field *f, int sweeps)
 {
     pst_shading *next = malloc(f->count * sizeof *next);
     int32_t *slot = pst_field_slots(f);
@@ -425,7 +425,7 @@ status pst_field_mend(const pst_field *f, int sweeps)
     for (int k = 0; s == OK && k < sweeps; k++) {
         memcpy(next, f->shading, f->count * sizeof *next);
         s = run(&(fit_job){.field = f,
-                           .task = MEND,
+                           .task = OUTLIERS,
                            .around = {.field = f, .slot = slot},
                            .contradiction = PST_FAR_LESS + mean_cost(f),
                            .next = next});

@@ -35,7 +35,7 @@ status pst_field_spread(const pst_field *f, int sweeps);
 /* Fits single pixels and speckles, where a wrong surface costs less than the right one, again from their neighbours if
  * most of these contradict them. Differing from all of them costs as much as pixels of this field cost on average; this
  * many times over all pixels. */
-status pst_field_mend(const pst_field *f, int sweeps);
+status pst_field_replace_outliers(const pst_field *f, int sweeps);
 
 /* Computes each observation's weight in the fit, and its value by the fit (both count × pst_padded(pictures)). */
 status pst_field_model(const pst_field *f, float *weight, float *model);

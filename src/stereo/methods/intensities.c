@@ -226,7 +226,7 @@ static status job_new(const pst_problem *p, size_t sample, intensities_job *job)
     return OK;
 }
 
-status pst_intensities_find(const pst_problem *p, size_t sample, double *e, double *told)
+status pst_intensities_find(const pst_problem *p, size_t sample, double *e, double *uniqueness)
 {
     intensities_job job = {0};
     double moved = HUGE_VAL;
@@ -235,7 +235,7 @@ status pst_intensities_find(const pst_problem *p, size_t sample, double *e, doub
     status s = job_new(p, sample, &job);
     for (int round = 0; s == OK && round < ROUNDS && moved > settled; round++)
         s = improve(&job, fmaxf(narrowest, widest / (float)(1 << (round < 8 ? round : 8))), e, &moved);
-    if (s == OK) *told = job.eigenvalue[1] / fmax(job.eigenvalue[0], 1e-12);
+    if (s == OK) *uniqueness = job.eigenvalue[1] / fmax(job.eigenvalue[0], 1e-12);
     pst_samples_free(&job.sample);
     free(job.level);
     free(job.form);

@@ -42,12 +42,12 @@ static const float searching = 0.3f, placed = 0.1f;
  * of one percent. */
 static const float most_offset = 0.1f, most_trust = 1e4f, least_trust = 1e-2f;
 
-/* The distance counts as determined if changing it by this factor multiplies the cost by well_told and adds least_told
- * per pixel, since noise changes it, too. Rings of four lights have 1 to 1.2 and 0.04, three lights nothing; five
- * around a ball 4 and 0.5, fifty around objects of all kinds at least 1.6 and 8 (docs/notes/solvers.md states the
- * errors with a ring). */
+/* The distance counts as determined if changing it by this factor multiplies the cost by least_factor and adds
+ * least_added per pixel, since noise changes it, too. Rings of four lights have 1 to 1.2 and 0.04, three lights
+ * nothing; five around a ball 4 and 0.5, fifty around objects of all kinds at least 1.6 and 8 (docs/notes/solvers.md
+ * states the errors with a ring). */
 static const float elsewhere = 1.25f;
-static const double well_told = 1.3, least_told = 0.1;
+static const double least_factor = 1.3, least_added = 0.1;
 
 typedef struct near_job {
     const pst_problem *problem;
@@ -107,7 +107,7 @@ static status check_distance(const near_job *job, bool *unsure)
     status s = cost_at(job, 1, true, &here);
     if (s == OK) s = cost_at(job, 1 / elsewhere, true, &nearer);
     if (s == OK) s = cost_at(job, elsewhere, true, &further);
-    if (s == OK) *unsure = fmin(nearer, further) < well_told * here + least_told * (double)job->sample.count;
+    if (s == OK) *unsure = fmin(nearer, further) < least_factor * here + least_added * (double)job->sample.count;
     return s;
 }
 
@@ -336,7 +336,7 @@ static status solve(near_job *job)
     if (s == OK && factor > 1) s = fill_in(job);
     if (s == OK) s = fit_normals(job, false);
     pst_field f = whole_field(job);
-    if (s == OK) s = pst_field_mend(&f, SWEEPS);
+    if (s == OK) s = pst_field_replace_outliers(&f, SWEEPS);
     return s == OK ? pst_field_store(&f, job->out) : s;
 }
 

@@ -94,13 +94,13 @@ static int next_valley(const double cost[COARSE], double above)
     return best;
 }
 
-/* Finds the distance; *told: whether other distances explain the pictures less well. An object nearer to the lights
- * than their centre also explains some pictures, so that the two best distances are refined. */
-static status find_distance(search *s, float *distance, bool *told)
+/* Finds the distance; *determined: whether other distances explain the pictures less well. An object nearer to the
+ * lights than their centre also explains some pictures, so that the two best distances are refined. */
+static status find_distance(search *s, float *distance, bool *determined)
 {
     double cost[COARSE], least = HUGE_VAL, above = -1;
     status result = OK;
-    *told = false;
+    *determined = false;
     for (int k = 0; k < COARSE && result == OK; k++)
         result = cost_at(s, first_extent * powf(step, (float)k), false, &cost[k]);
     for (int n = 0; n < VALLEYS && result == OK; n++) {
@@ -113,7 +113,7 @@ static status find_distance(search *s, float *distance, bool *told)
         if (!(closely < least)) continue;
         double nearer = k < APART ? 0 : cost[k - APART], further = k + APART < COARSE ? cost[k + APART] : 0;
         least = closely;
-        *told = fmin(nearer, further) > sharper * least;
+        *determined = fmin(nearer, further) > sharper * least;
         *distance = extent * s->unit;
     }
     return result;
@@ -193,11 +193,11 @@ static status refuse(const merlin_capture *c)
 static status choose(const merlin_capture *c, search *s, placing *p)
 {
     double afar = 0, free = 0, held = 0;
-    bool told = true, asked = p->near, known = p->distance > 0;
-    status result = known ? OK : find_distance(s, &p->distance, &told);
-    if (result == OK && asked && !told && are_units(s->about, c->count)) p->distance = 1, told = true;
-    if (result == OK && asked && !told) return refuse(c);
-    if (!told) return result;
+    bool determined = true, asked = p->near, known = p->distance > 0;
+    status result = known ? OK : find_distance(s, &p->distance, &determined);
+    if (result == OK && asked && !determined && are_units(s->about, c->count)) p->distance = 1, determined = true;
+    if (result == OK && asked && !determined) return refuse(c);
+    if (!determined) return result;
     float extent = p->distance / s->unit;
     if (result == OK) result = cost_at(s, extent, false, &free);
     bool unsure = s->unsure;

@@ -25,7 +25,7 @@ static status fit_all(const pst_field *f, merlin_surface *out)
     if (s == OK) s = pst_field_try_second(f);
     if (s == OK) s = pst_field_search(f, search_limit(f, cost));
     if (s == OK) s = pst_field_spread(f, SWEEPS);
-    if (s == OK) s = pst_field_mend(f, SWEEPS);
+    if (s == OK) s = pst_field_replace_outliers(f, SWEEPS);
     return s == OK ? pst_field_store(f, out) : s;
 }
 

@@ -24,10 +24,10 @@ static const double worth_intensities = 0.8;
 static const float likely_terminator = 0.1f;
 /* Largest error, as a ratio, that highlights, shadows and the terminator cause in Lambert's intensities. */
 static const double most_bent = 1.25;
-/* Limit for pst_intensities_find's `told`. Flat reliefs under unequal lights have 1 to 11 and errors of 3 to 14
+/* Limit for pst_intensities_find's `uniqueness`. Flat reliefs under unequal lights have 1 to 11 and errors of 3 to 14
  * degrees; reliefs with errors of half a degree, rendered objects and real ones have 24 and more
  * (docs/notes/unknown_lights.md). */
-static const double well_told = 12;
+static const double unique_enough = 12;
 /* Least share of a channel for a pixel to be informative about it. */
 static const float least_colour = 0.1f;
 
@@ -226,12 +226,12 @@ static status find_strengths(const pst_problem *p, merlin_surface *out)
 {
     int count = p->capture->count;
     semi_job job = {0};
-    double told = 0, *e = calloc(3 * (size_t)count, sizeof *e);
+    double uniqueness = 0, *e = calloc(3 * (size_t)count, sizeof *e);
     status s = e ? job_new(p, out->lights, &job) : fail(MERLIN_NO_MEMORY, "no memory for %d lights", count);
-    if (s == OK) s = pst_intensities_find(p, SAMPLE, e, &told);
+    if (s == OK) s = pst_intensities_find(p, SAMPLE, e, &uniqueness);
     if (s == OK) s = settle(&job, p->iterations > 0 ? p->iterations : ITERATIONS, e);
     if (s == OK && !job.equal && p->capture->channels == 3) find_colours(&job, e);
-    out->strengths_unsure = s == OK && !job.equal && told < well_told;
+    out->strengths_unsure = s == OK && !job.equal && uniqueness < unique_enough;
     free(e);
     job_free(&job);
     return s;

@@ -203,7 +203,7 @@ static void a_model_without_extras_leaves_its_rows_empty(void **state)
     assert_int_equal(eval_run(&options, &r), OK);
     assert_int_equal(r.all.samples, 1);
     assert_true(isnan(eval_score(&r.all, EVAL_RELIT_NETWORK, EVAL_MODEL)));
-    assert_false(eval_judge(&r.all, EVAL_RELIT_NETWORK).holds);
+    assert_false(eval_check_goal(&r.all, EVAL_RELIT_NETWORK).holds);
     assert_true(isfinite(eval_score(&r.all, EVAL_RELIT_BRDF, EVAL_MODEL)));
     free(weights);
 }
@@ -252,14 +252,14 @@ static void a_verdict_compares_with_the_better_trivial_answer(void **state)
         s.count[EVAL_RELIT_BRDF][a] = 1;
         s.sum[EVAL_RELIT_BRDF][a] = relit[a];
     }
-    eval_verdict v = eval_judge(&s, EVAL_ALBEDO);
+    eval_verdict v = eval_check_goal(&s, EVAL_ALBEDO);
     assert_true(fabs(v.ratio - 0.6) < 1e-12);
-    v = eval_judge(&s, EVAL_RELIT_BRDF);
+    v = eval_check_goal(&s, EVAL_RELIT_BRDF);
     assert_true(fabs(v.margin - 0.03) < 1e-12);
     assert_false(v.holds);
     s.sum[EVAL_RELIT_BRDF][EVAL_MODEL] = 0.98; /* against 0.92 */
-    assert_true(eval_judge(&s, EVAL_RELIT_BRDF).holds);
-    assert_false(eval_judge(&s, EVAL_ROUGHNESS).holds); /* no figures at all */
+    assert_true(eval_check_goal(&s, EVAL_RELIT_BRDF).holds);
+    assert_false(eval_check_goal(&s, EVAL_ROUGHNESS).holds); /* no figures at all */
 }
 
 /* The mean maps of a single sample are the sample itself. */
@@ -270,8 +270,8 @@ static void an_error_beside_none_has_no_ratio(void **state)
     r.all.count[EVAL_ALBEDO][EVAL_MODEL] = r.all.count[EVAL_ALBEDO][EVAL_MEAN] = 1;
     r.all.sum[EVAL_ALBEDO][EVAL_MODEL] = 0.06;
     r.classes[0] = r.all;
-    assert_true(isnan(eval_judge(&r.all, EVAL_ALBEDO).ratio));
-    assert_false(eval_judge(&r.all, EVAL_ALBEDO).holds);
+    assert_true(isnan(eval_check_goal(&r.all, EVAL_ALBEDO).ratio));
+    assert_false(eval_check_goal(&r.all, EVAL_ALBEDO).holds);
     char *json = eval_report_json(&r), *table;
     size_t size;
     FILE *stream = open_memstream(&table, &size);

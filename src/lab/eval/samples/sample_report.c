@@ -37,7 +37,7 @@ static const row_text rows[EVAL_ROWS] = {
 
 static const char *const answers[EVAL_ANSWERS] = {"model", "mean_maps", "inflated", "unchanged", "true_maps"};
 
-eval_verdict eval_judge(const eval_scores *scores, eval_row row)
+eval_verdict eval_check_goal(const eval_scores *scores, eval_row row)
 {
     double model = eval_score(scores, row, EVAL_MODEL), trivial = eval_best_trivial(scores, row);
     bool similarity = row >= EVAL_RECONSTRUCTION;
@@ -84,7 +84,7 @@ static void print_rows(const eval_scores *scores, FILE *stream)
         print_score(stream, scores, (eval_row)row, EVAL_TRUE_MAPS);
         for (int answer = EVAL_MEAN; answer <= EVAL_UNCHANGED; answer++)
             print_score(stream, scores, (eval_row)row, (eval_answer)answer);
-        eval_verdict v = eval_judge(scores, (eval_row)row);
+        eval_verdict v = eval_check_goal(scores, (eval_row)row);
         if (row >= EVAL_RECONSTRUCTION)
             print_number(stream, v.margin, "%+10.4f");
         else
@@ -125,7 +125,7 @@ static void print_group(const char *name, const eval_scores *scores, FILE *strea
     fprintf(stream, "%-14s%8zu", name, scores->samples);
     for (int i = 0; i < SHOWN; i++) {
         eval_row row = shown[i].row;
-        eval_verdict v = eval_judge(scores, row);
+        eval_verdict v = eval_check_goal(scores, row);
         double model = rows[row].scale * eval_score(scores, row, EVAL_MODEL);
         if (isnan(model))
             fprintf(stream, "%16s", "-");
@@ -248,7 +248,7 @@ static void add_scores(cJSON *o, const eval_scores *scores)
         cJSON *r = json_put_object(o, rows[row].key);
         for (int answer = 0; answer < EVAL_ANSWERS; answer++)
             add_number(r, answers[answer], eval_score(scores, (eval_row)row, (eval_answer)answer));
-        eval_verdict v = eval_judge(scores, (eval_row)row);
+        eval_verdict v = eval_check_goal(scores, (eval_row)row);
         add_number(r, "ratio", v.ratio);
         add_number(r, "margin", v.margin);
         if (rows[row].paper > 0) json_put_number(r, "paper", rows[row].paper);

@@ -21,7 +21,7 @@ typedef struct eval_verdict {
 
 /* Compares the scores with the goals of docs/evaluation.md; docs/notes/not_reached.md discusses those that are not
  * reached. */
-eval_verdict eval_judge(const eval_scores *scores, eval_row row);
+eval_verdict eval_check_goal(const eval_scores *scores, eval_row row);
 
 /* Returns EVAL_GIVEN_* for "albedo", "normal", "roughness" or "depth"; 0 for anything else. */
 int eval_given_of(const char *name);

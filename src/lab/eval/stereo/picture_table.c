@@ -37,7 +37,7 @@ static double light_error(const merlin_capture *c, int i, const merlin_found_lig
     return normal_angle(vec3_of(c->light[i].direction), way);
 }
 
-static status judge(const merlin_capture *c, const merlin_maps *maps, picture_score *score)
+static status score_maps(const merlin_capture *c, const merlin_maps *maps, picture_score *score)
 {
     img normal = {0};
     /* A model of any light says how a surface stands, not how it is turned against its pixel's line of sight. */
@@ -60,7 +60,7 @@ static status measure(run *r, const merlin_capture *c, int i, picture_score *sco
     snprintf(score->name, sizeof score->name, "%s", file_name_of(c->name[i]));
     status s = stereo_object_photo(c, i, &photo);
     if (s == OK) s = merlin_estimate(r->model, &photo, &c->mask, NULL, &maps);
-    if (s == OK) s = judge(c, &maps, score);
+    if (s == OK) s = score_maps(c, &maps, score);
     score->aside = aside_of(c, i);
     score->light = light_error(c, i, &maps.light);
     score->as_flash = r->options->flash && !maps.light.known;

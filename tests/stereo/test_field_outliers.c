@@ -83,7 +83,7 @@ static void speckles_are_fitted_again_from_the_majority(void **state)
         one->normal = vec3_make(0, 0.8f, 0.6f);
         one->cost *= 0.7f;
     }
-    assert_int_equal(pst_field_mend(&r.field, 2), OK);
+    assert_int_equal(pst_field_replace_outliers(&r.field, 2), OK);
     assert_right(&r);
     roof_drop(&r);
 }
@@ -94,7 +94,7 @@ static void creases_and_grooves_a_pixel_wide_stay(void **state)
     (void)state;
     roof r;
     roof_new(&r);
-    assert_int_equal(pst_field_mend(&r.field, 2), OK);
+    assert_int_equal(pst_field_replace_outliers(&r.field, 2), OK);
     assert_right(&r);
     roof_drop(&r);
 }
