@@ -17,6 +17,7 @@
  *     status.h       errors, progress, threads
  *     image.h        pixels
  *     pictures.h     sheets and animations
+ *     photos.h       the photographs of a folder, and their masks
  *     camera.h       lenses
  *     warnings.h     what one should know about a result
  *     files.h        files that were written or skipped
@@ -56,6 +57,7 @@
 #include <merlin/maps.h>
 #include <merlin/mesh.h>
 #include <merlin/model.h>
+#include <merlin/photos.h>
 #include <merlin/pictures.h>
 #include <merlin/relight.h>
 #include <merlin/status.h>

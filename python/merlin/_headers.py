@@ -84,6 +84,11 @@ Params = _struct("params", [
     ("flash", c_int), ("fov", c_float), ("hint", Hint), ("last", c_int)])
 Object = _struct("object", [("mask", Image), ("source", c_int), ("confidence", c_float), ("seconds", c_double)])
 
+# ---- photos.h ----
+
+PhotoFile = _struct("photo_file", [("path", c_char_p), ("mask", c_char_p)])
+Photos = _struct("photos", [("at", POINTER(PhotoFile)), ("count", c_size_t), ("skipped", SkippedFiles)])
+
 # ---- pictures.h ----
 
 PNG, JPEG = range(2)
@@ -178,6 +183,11 @@ FUNCTIONS: Dict[str, Tuple[Any, List[Any]]] = {
     "image_from_pixels": (c_int, [c_void_p, _at(PixelLayout), _at(Image), _at(Image)]),
     "mask_from_pixels": (c_int, [c_void_p, _at(PixelLayout), _at(Image)]),
     "image_to_pixels": (c_int, [_at(Image), _at(Image), _at(PixelLayout), c_void_p]),
+    "photos_list": (c_int, [c_char_p, c_char_p, _at(Photos)]),
+    "photos_free": (None, [_at(Photos)]),
+    "mask_find": (c_int, [c_char_p, _at(c_void_p)]),
+    "masks_find": (c_int, [c_char_p, _at(c_char_p), c_size_t, _at(c_void_p)]),
+    "mask_is_name": (c_int, [c_char_p]),
     "image_resize": (c_int, [_at(Image), c_int, c_int, _at(Image)]),
     "image_encode": (c_int, [_at(Image), c_int, _at(c_void_p), _at(c_size_t)]),
     "mask_write": (c_int, [_at(Image), c_char_p]),

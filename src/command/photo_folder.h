@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Determines which files of a folder are photographs, and which masks belong to them; photos.c makes lists of them. It
- * also finds a single photograph's mask, by the same names (image/read/mask_names.h). */
+/* Photographs of folders and their masks, as merlin/photos.h finds them, for the lists of photos.c. */
 #ifndef MERLIN_COMMAND_PHOTO_FOLDER_H
 #define MERLIN_COMMAND_PHOTO_FOLDER_H
 

@@ -51,11 +51,6 @@ status vips_begin(void)
     return started ? OK : fail(MERLIN_DEVICE_FAILED, "the image library " MERLIN_VIPS " did not start");
 }
 
-void vips_without_modules(void)
-{
-    (void)setenv("VIPSHOME", "/nonexistent", 0); /* where it looks for modules; a value set by the user is kept */
-}
-
 bool vips_load_heif(void)
 {
     typedef const gchar *registration(void *module); /* what GModule, libvips' loader of modules, calls */

@@ -15,10 +15,8 @@ status vips_begin(void);
 /* Fails with "cannot VERB PATH: the library's first message" and status s; clears the library's messages. */
 status vips_refusal(status s, const char *verb, const char *path);
 
-/* Makes libvips start without its modules, which takes longer than everything else it does for a small picture; called
- * by a program's main before it has threads. Only HEIF's module is needed here, and vips_load_heif loads it. */
-void vips_without_modules(void);
-/* Loads libvips' HEIF module, after vips_begin; may be called from any thread. Returns false if the module is not
+/* Loads libvips' HEIF module, which it has not where a program leaves modules out (command/program.c), after
+ * vips_begin; may be called from any thread. Returns false if the module is not
  * installed. */
 bool vips_load_heif(void);
 

@@ -11,6 +11,7 @@
 #include "image/read/read.h"
 #include "image/write/figure.h"
 #include "image/write/write.h"
+#include "merlin/photos.h"
 #include "merlin/pictures.h"
 #include "writes.h"
 
@@ -271,6 +272,39 @@ static void writes_or_says_that_there_is_no_memory(const char *name, status (*wr
     img_free(&w.image);
 }
 
+static int list_photos(void *context)
+{
+    merlin_photos photos;
+    const char *const names[] = {"a.png"};
+    char *masks[1];
+    (void)context;
+    int s = merlin_photos_list(scratch, NULL, &photos);
+    if (s != MERLIN_OK) assert_null(photos.at);
+    if (s == MERLIN_OK) assert_int_equal(photos.count, 1);
+    merlin_photos_free(&photos);
+    if (s == MERLIN_OK) s = merlin_masks_find(scratch, names, 1, masks);
+    if (s == MERLIN_OK) free(masks[0]);
+    return s;
+}
+
+static const char *check_nothing(void *context, int result)
+{
+    (void)context;
+    (void)result;
+    return NULL;
+}
+
+static void lack_of_memory_lists_no_photographs(void **state)
+{
+    (void)state;
+    img p = picture_of(3);
+    assert_int_equal(img_write_png(scratch_path("a.png"), &p, IMG_SRGB8), OK);
+    assert_int_equal(img_write_png(scratch_path("a.mask.png"), &p, IMG_SRGB8), OK);
+    assert_int_equal(img_write_png(scratch_path("b.mask.png"), &p, IMG_SRGB8), OK);
+    img_free(&p);
+    each_allocation_fails(&(memory_trial){"photos_list", list_photos, check_nothing, NULL});
+}
+
 static void lack_of_memory_leaves_no_picture(void **state)
 {
     (void)state;
@@ -295,6 +329,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         in_scratch(lack_of_memory_reads_no_picture),
         in_scratch(lack_of_memory_beside_libvips_reads_no_picture),
+        in_scratch(lack_of_memory_lists_no_photographs),
         in_scratch(lack_of_memory_leaves_no_picture),
         in_scratch(lack_of_memory_beside_libvips_leaves_no_picture),
     };
