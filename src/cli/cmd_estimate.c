@@ -265,7 +265,7 @@ static status write_files(const more_work *w, const merlin_maps *maps, bool last
 }
 
 /* Processes a photograph in memory, which is empty afterwards, to files. */
-static status take_apart(const request *r, const photo_job *job, photo_taken *taken, lap_times *laps)
+static status process_photo(const request *r, const photo_job *job, photo_taken *taken, lap_times *laps)
 {
     double began = clock_seconds(), clock = began;
     const bool last = job == &r->photos->at[r->photos->count - 1];
@@ -297,7 +297,7 @@ static status estimate_one(const request *r, const photo_job *job)
     status s = photo_take(job, &taken);
     laps.read = taken.read_seconds;
     laps.mask = taken.object.seconds;
-    return s == OK ? take_apart(r, job, &taken, &laps) : s;
+    return s == OK ? process_photo(r, job, &taken, &laps) : s;
 }
 
 /* Reads the first photograph, and finds its object, while the weights are read and the network is prepared. */
@@ -319,7 +319,7 @@ static status estimate_first(request *r, const photo_job *job, bool *ready, bool
     s = photo_finish(&first, &taken);
     laps.read = lap(&now);
     taken.object.seconds = 0; /* they ran in parallel */
-    if (opened == OK) return s == OK ? take_apart(r, job, &taken, &laps) : s;
+    if (opened == OK) return s == OK ? process_photo(r, job, &taken, &laps) : s;
     photo_taken_free(&taken);
     return fail(opened, "%s", words);
 }
@@ -361,7 +361,7 @@ static int estimate_all(request *r, const photo_list *photos)
 }
 
 /* Removes photographs of other shares, and those that are done. */
-static void leave_out(const request *r, photo_list *photos)
+static void skip_photos(const request *r, photo_list *photos)
 {
     if (r->share.of) photo_list_share(photos, &r->share);
     size_t done = r->resume ? photo_list_drop_done(photos) : 0;
@@ -381,7 +381,7 @@ int cmd_estimate(int argc, char **argv)
     s = photo_list_make(argv, argc, r.mask, r.output, &photos);
     if (s != OK) return cli_fail("estimate", s);
     if (!r.quiet) photo_list_tell(&photos, "estimate");
-    leave_out(&r, &photos);
+    skip_photos(&r, &photos);
     bool told = false;
     r.photos = &photos;
     r.told = &told;

@@ -153,10 +153,10 @@ static void a_relit_picture_is_flipped_with_photograph_and_light(void **state)
     assert_int_equal(write_random_weights_of("merlin-env-deep", scratch_path("w.safetensors")), OK);
     assert_int_equal(network_open(scratch_path("w.safetensors"), &n), OK);
     draw(&photo, &mask);
-    network_look *look;
-    assert_int_equal(network_look_new(n, &photo, &mask, NULL, NETWORK_VIEWS, &look), OK);
-    assert_int_equal(network_relight(n, look, &light, &relit), OK);
-    network_look_free(look);
+    network_features *features;
+    assert_int_equal(network_features_new(n, &photo, &mask, NULL, NETWORK_VIEWS, &features), OK);
+    assert_int_equal(network_relight(n, features, &light, &relit), OK);
+    network_features_free(features);
     for (int o = 1; o < 4; o++) {
         img turned_photo, turned_mask, other, back;
         float place[3] = {light.place.x, light.place.y, light.place.z}, turned_environment[9][3];
@@ -166,14 +166,14 @@ static void a_relit_picture_is_flipped_with_photograph_and_light(void **state)
         const illumination turned = {vec3_of(place), (const float(*)[3])turned_environment};
         turn(&photo, o, &turned_photo);
         turn(&mask, o, &turned_mask);
-        assert_int_equal(network_look_new(n, &turned_photo, &turned_mask, NULL, NETWORK_VIEWS, &look), OK);
-        assert_int_equal(network_relight(n, look, &light, &other), OK);
+        assert_int_equal(network_features_new(n, &turned_photo, &turned_mask, NULL, NETWORK_VIEWS, &features), OK);
+        assert_int_equal(network_relight(n, features, &light, &other), OK);
         assert_int_equal(img_new(&back, SIZE, SIZE, 3), OK);
         view_add(&back, &other, o, 1);
         assert_true(largest_difference(&back, &relit) > 1e-3f); /* the light stood still */
         img_free(&other);
-        assert_int_equal(network_relight(n, look, &turned, &other), OK);
-        network_look_free(look);
+        assert_int_equal(network_relight(n, features, &turned, &other), OK);
+        network_features_free(features);
         memset(back.data, 0, img_value_count(&back) * sizeof *back.data);
         view_add(&back, &other, o, 1);
         assert_true(largest_difference(&back, &relit) < 1e-5f);
@@ -264,9 +264,9 @@ static void a_wrong_number_of_views_is_refused(void **state)
     assert_int_equal(network_estimate(n, &photo, &mask, NULL, 0, NULL, &e), MERLIN_WRONG_USE);
     assert_int_equal(network_estimate(n, &photo, &mask, NULL, 9, NULL, &e), MERLIN_WRONG_USE);
     assert_int_equal(network_normals(n, &photo, &mask, NULL, 0, NULL, &normal), MERLIN_WRONG_USE);
-    network_look *look;
-    assert_int_equal(network_look_new(n, &photo, &mask, NULL, 9, &look), MERLIN_WRONG_USE);
-    assert_null(look);
+    network_features *features;
+    assert_int_equal(network_features_new(n, &photo, &mask, NULL, 9, &features), MERLIN_WRONG_USE);
+    assert_null(features);
     img_free(&photo);
     img_free(&mask);
     network_close(n);

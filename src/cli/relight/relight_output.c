@@ -80,7 +80,7 @@ static int frame_side(const relight_job *job)
 }
 
 /* Frees what the relighter has copied. */
-static void let_go(merlin_maps *m)
+static void free_photo_maps(merlin_maps *m)
 {
     merlin_image *spent[] = {&m->albedo, &m->normal, &m->roughness, &m->depth, &m->photo};
     for (size_t i = 0; i < sizeof spent / sizeof spent[0]; i++)
@@ -102,11 +102,11 @@ static status write_all(relight_work *w)
     const relight_job *job = w->job;
     bool whole = relight_count_whole(job) > 0, both = whole && job->orbit > 0;
     status s = prepare_relighter(w, whole ? 0 : frame_side(job));
-    if (s == OK && !both) let_go(job->maps);
+    if (s == OK && !both) free_photo_maps(job->maps);
     if (s == OK) s = write_lights(w);
     if (s == OK && job->dome.count) s = relight_write_dome(w);
     if (s == OK && both) s = merlin_relighter_resize(w->relighter, job->maps, frame_side(job));
-    if (both) let_go(job->maps);
+    if (both) free_photo_maps(job->maps);
     if (s == OK && job->orbit) s = relight_write_orbit(w, frame_side(job));
     merlin_relighter_free(w->relighter);
     merlin_found_lights_free(&w->found);

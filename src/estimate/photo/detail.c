@@ -52,7 +52,7 @@ status detail_fuse(const img *fine, const img *mask, img *normal)
 }
 
 /* Runs the network on the larger picture, and makes the guide that the coarse estimate needs afterwards. */
-static status look(network *n, const detail_request *r, img *guide, img *mask, img *normal)
+static status estimate_normals(network *n, const detail_request *r, img *guide, img *mask, img *normal)
 {
     status s = input_make(r->photo, r->mask, r->side, guide, mask);
     if (s == OK) input_expose(guide, r->gain);
@@ -65,7 +65,7 @@ status detail_add(network *n, const detail_request *r, surface *maps)
 {
     img guide = {0}, mask = {0}, fine = {0};
     surface larger = {0};
-    status s = look(n, r, &guide, &mask, &fine);
+    status s = estimate_normals(n, r, &guide, &mask, &fine);
     if (s == OK) s = surface_refine(maps, &guide, &mask, &larger);
     if (s == OK) s = detail_fuse(&fine, &mask, &larger.normal);
     if (s == OK) surface_tidy(&larger);

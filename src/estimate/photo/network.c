@@ -88,7 +88,7 @@ static void free_maps(network *n)
 static void free_programs(network *n)
 {
     free_maps(n);
-    compiled_free(&n->look);
+    compiled_free(&n->features);
     compiled_free(&n->relit);
     compiled_free(&n->indirect);
 }
@@ -135,8 +135,8 @@ const model_config *network_config(const network *n)
  * outputs read after it. */
 static const nn_program *largest(const network *n)
 {
-    const nn_program *all[] = {n->lights.program, n->maps.program,  n->normals.program,
-                               n->look.program,   n->relit.program, n->indirect.program};
+    const nn_program *all[] = {n->lights.program,   n->maps.program,  n->normals.program,
+                               n->features.program, n->relit.program, n->indirect.program};
     const nn_program *found = NULL;
     size_t most = 0;
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {

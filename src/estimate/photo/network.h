@@ -74,13 +74,14 @@ status network_normals(network *n, const img *photo, const img *mask, const sigh
 
 /* Features of a photograph for the relighting decoder in its first `views` orientations, which do not depend on the
  * light; photo and mask as for network_estimate. MERLIN_WRONG_USE if the model has no such decoder. */
-typedef struct network_look network_look;
-status network_look_new(network *n, const img *photo, const img *mask, const sight *how, int views, network_look **out);
-void network_look_free(network_look *look);
+typedef struct network_features network_features;
+status network_features_new(network *n, const img *photo, const img *mask, const sight *how, int views,
+                            network_features **out);
+void network_features_free(network_features *features);
 
 /* Renders that photograph under another light by the relighting decoder of the same network, as the mean over the
  * orientations, without bounces. MERLIN_WRONG_USE if the light has an environment and the model does not support it. */
-status network_relight(network *n, const network_look *look, const illumination *light, img *direct);
+status network_relight(network *n, const network_features *features, const illumination *light, img *direct);
 
 /* Estimates bounces 2 and up for a surface whose bounce 1 is `direct` (any range; clipped as in training) under point
  * lights, and `environment` (diffuse only; may be NULL) under an environment. */

@@ -21,7 +21,7 @@ struct network {
     nn_params *params;    /* parameters; NULL until they are needed */
     char *weights;        /* path of their file */
     pthread_mutex_t lock; /* guards the programs, whose buffers a run uses */
-    compiled lights, maps, normals, look, relit,
+    compiled lights, maps, normals, features, relit,
         indirect; /* lights and normals: programs with only these outputs; normals for larger pictures */
     nn_type type;
     double compile_seconds;

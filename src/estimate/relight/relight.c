@@ -45,7 +45,7 @@ static status light_by_brdf(const relighter *s, const lamp *light, img *full, im
 static status light_by_network(network *n, const relighter *s, const lamp *light, img *full, img *low)
 {
     illumination both = {light->at, s->environment ? (const float(*)[3])s->environment->sh : NULL};
-    status result = network_relight(n, s->look, &both, low);
+    status result = network_relight(n, s->features, &both, low);
     if (result == OK) result = surface_resize_image(low, &s->low.mask, &s->full.mask, full);
     /* whether enlarged or not, it continues outside the object */
     if (result == OK) multiply_mask(full, &s->full.mask);

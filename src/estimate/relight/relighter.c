@@ -16,8 +16,8 @@ void relighter_free(relighter *s)
     surface_free(&s->full);
     surface_free(&s->low);
     img_free(&s->low_photo);
-    network_look_free(s->look);
-    s->look = NULL;
+    network_features_free(s->features);
+    s->features = NULL;
     img_free(&s->flash);
     shadow_occluder_free(&s->occluder);
     horizon_free(&s->horizon);
@@ -85,8 +85,8 @@ static status take_low(network *n, const merlin_maps *maps, const img *mask, rel
     if (result == OK) result = take_low_photo(maps, &s->low.mask, &s->low_photo);
     if (result == OK) result = surface_shade(&s->low, vec3_make(0, 0, 0), &s->flash);
     if (result == OK && s->how == MERLIN_BY_NETWORK)
-        result =
-            network_look_new(n, &s->low_photo, &s->low.mask, &(sight){.lens = s->low.lens}, NETWORK_VIEWS, &s->look);
+        result = network_features_new(n, &s->low_photo, &s->low.mask, &(sight){.lens = s->low.lens}, NETWORK_VIEWS,
+                                      &s->features);
     if (result == OK && relighter_casts_shadows(s)) result = occluder_of(&s->low, &s->occluder);
     return result;
 }

@@ -19,7 +19,7 @@ struct merlin_environment {
 typedef struct relighter {
     surface full, low;
     img low_photo;              /* radiance of the photograph at the network's size */
-    network_look *look;         /* features for the relighting decoder; else NULL */
+    network_features *features; /* features for the relighting decoder; else NULL */
     img flash;                  /* bounce 1 of `low` under the flash */
     shadow_occluder occluder;   /* empty unless shadows are cast */
     horizon horizon;            /* set only if shadows are cast and there is an environment */

@@ -87,7 +87,7 @@ status raw_estimate(merlin_model *model, const eval_photo *photo, int views, mer
     return s;
 }
 
-status raw_look(merlin_model *model, const eval_photo *photo, int views, network_look **out)
+status raw_features(merlin_model *model, const eval_photo *photo, int views, network_features **out)
 {
     network *n = model->network;
     const sight how = sight_by(n, photo);
@@ -95,7 +95,7 @@ status raw_look(merlin_model *model, const eval_photo *photo, int views, network
     *out = NULL;
     if (network_config(n)->relight != MODEL_RELIGHT_NETWORK) return OK;
     status s = radiance_of(photo, &radiance);
-    if (s == OK) s = network_look_new(n, &radiance, &photo->mask, &how, views, out);
+    if (s == OK) s = network_features_new(n, &radiance, &photo->mask, &how, views, out);
     img_free(&radiance);
     return s;
 }

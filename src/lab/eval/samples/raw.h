@@ -3,8 +3,8 @@
  * smoothed, fused or refined afterwards.
  *
  *     status s = raw_estimate(model, &photo, views, &maps);
- *     if (s == OK) s = raw_look(model, &photo, views, &look);
- *     if (s == OK && look) s = network_relight(model->network, look, &light, &direct);
+ *     if (s == OK) s = raw_features(model, &photo, views, &features);
+ *     if (s == OK && features) s = network_relight(model->network, features, &light, &direct);
  *
  * Its maps stand where merlin_estimate's would, so that whatever is made of them is the same. */
 #ifndef MERLIN_LAB_EVAL_SAMPLES_RAW_H
@@ -18,6 +18,6 @@
  * found. */
 status raw_estimate(merlin_model *model, const eval_photo *photo, int views, merlin_maps *maps);
 /* Takes what the relighting decoder wants of it; NULL for a model without. */
-status raw_look(merlin_model *model, const eval_photo *photo, int views, network_look **out);
+status raw_features(merlin_model *model, const eval_photo *photo, int views, network_features **out);
 
 #endif

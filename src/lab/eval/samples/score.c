@@ -43,7 +43,7 @@ static status estimate(const eval_scorer *e, eval_subject *on)
 {
     status s = e->raw ? raw_estimate(e->model, &on->photo, e->views, &on->maps)
                       : eval_photo_estimate(e->model, &on->photo, &on->maps);
-    if (s == OK && e->raw) s = raw_look(e->model, &on->photo, e->views, &on->look);
+    if (s == OK && e->raw) s = raw_features(e->model, &on->photo, e->views, &on->features);
     if (s == OK) give(&on->truth, e->given, &on->maps);
     return s == OK ? eval_photo_surface(&on->photo, &on->maps, &on->found) : s;
 }
@@ -218,7 +218,7 @@ static void subject_free(eval_subject *on)
     surface_free(&on->inflated);
     surface_free(&on->found);
     merlin_maps_free(&on->maps);
-    network_look_free(on->look);
+    network_features_free(on->features);
     eval_photo_free(&on->photo);
     img_free(&on->image);
     img_free(&on->mask);

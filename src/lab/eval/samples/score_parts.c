@@ -35,8 +35,8 @@ static status score_decoder(eval_scorer *e, eval_subject *on, const illumination
                             const img *target)
 {
     img relit = {0};
-    if (!on->look) return OK;
-    status s = network_relight(e->model->network, on->look, light, &relit);
+    if (!on->features) return OK;
+    status s = network_relight(e->model->network, on->features, light, &relit);
     if (s == OK) s = eval_note_similarity(&on->scores, row, EVAL_MODEL, &relit, target);
     img_free(&relit);
     return s;

@@ -30,9 +30,9 @@ typedef struct eval_subject {
     eval_photo photo;
     img image; /* its radiance, saturated at 1 like everything that is compared */
     surface truth, inflated;
-    merlin_maps maps;   /* the model's, in the photograph's frame */
-    surface found;      /* the same in the sample's frame */
-    network_look *look; /* of a raw model with a relighting decoder; else NULL */
+    merlin_maps maps;           /* the model's, in the photograph's frame */
+    surface found;              /* the same in the sample's frame */
+    network_features *features; /* of a raw model with a relighting decoder; else NULL */
     eval_scores scores;
 } eval_subject;
 
