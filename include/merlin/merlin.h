@@ -32,6 +32,7 @@
  *     mesh.h         maps and surfaces as triangles
  *     view.h         maps as a page
  *     export.h       maps for other programs
+ *     rti.h          pictures under many lights, to be relit in a browser
  *
  * Images are float, interleaved, rows from the top, on linear sRGB primaries. Space: the camera is at the origin and
  * looks along -z, x right, y up; the object is near (0, 0, -1).
@@ -60,6 +61,7 @@
 #include <merlin/photos.h>
 #include <merlin/pictures.h>
 #include <merlin/relight.h>
+#include <merlin/rti.h>
 #include <merlin/status.h>
 #include <merlin/stereo.h>
 #include <merlin/view.h>

@@ -142,6 +142,13 @@ EXPORT_SIDE, EXPORT_LEAST_SIDE, EXPORT_MOST_SIDE = 2048, 64, 8192
 ExportParams = _struct("export_params", [("maps", c_uint), ("normal_down", c_int), ("side", c_int)])
 ExportFacts = _struct("export_facts", [("side", c_int), ("relief", c_float), ("width", c_float)])
 
+# ---- rti.h ----
+
+RTI_PTM, RTI_LRGB, RTI_HSH, RTI_RBF = range(4)
+RTI_MOST_SIDE, RTI_MOST_PICTURES, RTI_MOST_RBF_PICTURES = 16384, 999, 300
+RTI_PLANES, RTI_MOST_PLANES, RTI_QUALITY = 18, 27, 95
+RtiParams = _struct("rti_params", [("basis", c_int), ("planes", c_int), ("quality", c_int)])
+
 # ---- mesh.h ----
 
 Mesh = _struct("mesh", [
@@ -214,6 +221,11 @@ FUNCTIONS: Dict[str, Tuple[Any, List[Any]]] = {
     "maps_report": (c_int, [_at(Maps), POINTER(c_void_p)]),
     "maps_export": (c_int, [_at(Maps), _at(ExportParams), c_char_p, _at(ExportFacts), _at(Files)]),
     "maps_occlusion": (c_int, [_at(Maps), c_int, _at(Image)]),
+    "rti_new": (c_int, [c_int, c_int, _at(RtiParams), _out]),
+    "rti_add": (c_int, [_handle, _at(Image), _light3]),
+    "rti_write": (c_int, [_handle, c_char_p, _at(Files)]),
+    "rti_write_ptm": (c_int, [_handle, c_char_p]),
+    "rti_free": (None, [_handle]),
     "maps_read": (c_int, [c_char_p, _at(Maps)]),
     "maps_look": (c_int, [c_char_p, POINTER(c_int)]),
     "shot_read": (c_int, [c_char_p, _at(Shot)]),

@@ -67,24 +67,33 @@ static bool compress(uint8_t *rgb, int width, int height, const img_jpeg *how, b
     return true;
 }
 
-status jpeg_encode(const char *name, const img *image, uint8_t **data, size_t *size)
+status jpeg_encode_codes(const char *name, uint8_t *rgb, int width, int height, const img_jpeg *how, uint8_t **data,
+                         size_t *size)
 {
-    const img_jpeg how = {.quality = 95};
-    if (image->width > JPEG_MAX_DIMENSION || image->height > JPEG_MAX_DIMENSION)
+    *data = NULL, *size = 0;
+    if (width > JPEG_MAX_DIMENSION || height > JPEG_MAX_DIMENSION)
         return fail(MERLIN_WRONG_USE, "cannot write %s: a JPEG is at most %ld pixels wide and high", name,
                     (long)JPEG_MAX_DIMENSION);
     bytes made = {0};
-    uint8_t *rgb = malloc(img_value_count(image));
-    if (rgb) srgb_codes8(image->data, img_value_count(image), rgb);
-    bool done = rgb && compress(rgb, image->width, image->height, &how, &made);
-    free(rgb);
-    if (!done) {
+    if (!compress(rgb, width, height, how, &made)) {
         free(made.data);
-        made = (bytes){0};
+        return fail(MERLIN_NO_MEMORY, "no memory to write %s", name);
     }
     *data = made.data;
     *size = made.size;
-    return done ? OK : fail(MERLIN_NO_MEMORY, "no memory to write %s", name);
+    return OK;
+}
+
+status jpeg_encode(const char *name, const img *image, uint8_t **data, size_t *size)
+{
+    const img_jpeg how = {.quality = 95};
+    uint8_t *rgb = malloc(img_value_count(image));
+    *data = NULL, *size = 0;
+    if (!rgb) return fail(MERLIN_NO_MEMORY, "no memory to write %s", name);
+    srgb_codes8(image->data, img_value_count(image), rgb);
+    status s = jpeg_encode_codes(name, rgb, image->width, image->height, &how, data, size);
+    free(rgb);
+    return s;
 }
 
 static bool decompress(const bytes *from, int width, uint8_t *rgb)

@@ -23,5 +23,8 @@ status img_jpeg_round_trip(uint8_t *rgb, int width, int height, const img_jpeg *
 /* Encodes an image to a file's bytes, malloc'ed: image is linear, of 3 channels, and is written as sRGB, the default
  * without a profile, with quality 95 and chroma at full resolution. `name` is used in messages. */
 status jpeg_encode(const char *name, const img *image, uint8_t **data, size_t *size);
+/* Encodes codes, width × height × 3, likewise, but as they are. */
+status jpeg_encode_codes(const char *name, uint8_t *rgb, int width, int height, const img_jpeg *how, uint8_t **data,
+                         size_t *size);
 
 #endif
