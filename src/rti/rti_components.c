@@ -45,7 +45,8 @@ static void choose_pixels(sampling *s)
 
 static float value_of(const merlin_rti *rti, size_t pixel, int place)
 {
-    return (float)rti->pictures[place / 3][3 * pixel + (size_t)(place % 3)] / 255;
+    const int picture = place / 3, channel = place % 3;
+    return (float)rti->pictures[picture][3 * pixel + (size_t)channel] / 255;
 }
 
 static void sum_row(void *context, size_t row)
@@ -60,16 +61,17 @@ static void sum_row(void *context, size_t row)
     }
 }
 
-static status sum_products(const merlin_rti *rti, int length, double *products)
+static status sum_products(const merlin_rti *rti, int length, double **products)
 {
-    sampling s = {.rti = rti, .products = products, .length = length};
+    sampling s = {.rti = rti, .length = length};
+    *products = s.products = calloc((size_t)length * (size_t)length, sizeof *s.products);
     s.count = min_size(rti_pixel_count(rti), LEAST_SAMPLES + SAMPLES_A_VALUE * (size_t)length);
     s.pixels = malloc(s.count * sizeof *s.pixels);
-    if (!s.pixels) return fail(MERLIN_NO_MEMORY, "no memory for %zu sampled pixels", s.count);
-    choose_pixels(&s);
-    parallel_for((size_t)length, sum_row, &s);
+    const bool done = s.pixels && s.products;
+    if (done) choose_pixels(&s);
+    if (done) parallel_for((size_t)length, sum_row, &s);
     free(s.pixels);
-    return OK;
+    return done ? OK : fail(MERLIN_NO_MEMORY, "no memory for %zu sampled pixels", s.count);
 }
 
 /* ---- the vectors ---- */
@@ -121,11 +123,11 @@ static status set_projection(rti_components *c)
 static status find_vectors(rti_components *c)
 {
     const size_t length = (size_t)c->length, planes = (size_t)c->planes;
-    double *products = calloc(length * length, sizeof *products), *value = malloc(2 * length * sizeof *value);
+    double *products = NULL, *value = malloc(2 * length * sizeof *value);
     c->codes = malloc(planes * length);
     c->projection = malloc(length * planes * sizeof *c->projection);
-    status s = products && value && c->codes && c->projection
-                   ? sum_products(c->rti, c->length, products)
+    status s = value && c->codes && c->projection
+                   ? sum_products(c->rti, c->length, &products)
                    : fail(MERLIN_NO_MEMORY, "no memory for the principal components of %d pictures", c->rti->count);
     if (s == OK && !dense_eigen(products, c->length, true, value))
         s = fail(MERLIN_BAD_INPUT, "the pictures have no principal components");

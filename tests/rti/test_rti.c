@@ -139,9 +139,9 @@ static void relief_is_relit_under_lights_that_were_held_out(void **state)
         merlin_rti_basis basis;
         const char *name;
         double most;
-    } kinds[] = {{MERLIN_RTI_PTM, "relief.ptm", 0.05}, {MERLIN_RTI_LRGB, "lrgb.ptm", 0.05},
-                 {MERLIN_RTI_PTM, "relief_ptm", 0.05}, {MERLIN_RTI_LRGB, "relief_lrgb", 0.05},
-                 {MERLIN_RTI_HSH, "relief_hsh", 0.05}, {MERLIN_RTI_RBF, "relief_rbf", 0.05}};
+    } kinds[] = {{MERLIN_RTI_PTM, "relief.ptm", 0.048}, {MERLIN_RTI_LRGB, "lrgb.ptm", 0.048},
+                 {MERLIN_RTI_PTM, "relief_ptm", 0.048}, {MERLIN_RTI_LRGB, "relief_lrgb", 0.048},
+                 {MERLIN_RTI_HSH, "relief_hsh", 0.026}, {MERLIN_RTI_RBF, "relief_rbf", 0.036}};
     for (size_t i = 0; i < sizeof kinds / sizeof kinds[0]; i++) {
         rti_reader *r = written(kinds[i].basis, relief, kinds[i].name);
         const double openlime = error_of(r, RTI_OPENLIME), relight = error_of(r, RTI_RELIGHT);
@@ -162,7 +162,8 @@ static void what_is_black_remains_black(void **state)
         rti_reader *r = rti_reader_open(scratch_path(names[i]));
         assert_non_null(r);
         rti_reader_render(r, l, RTI_OPENLIME, values);
-        for (int k = 0; k < 3 * WIDTH * MARGIN; k++) /* the first rows are away from the object's 8 × 8 blocks of JPEG */
+        for (int k = 0; k < 3 * WIDTH * MARGIN;
+             k++) /* the first rows are away from the object's 8 × 8 blocks of JPEG */
             if (values[k] > 1.5f / 255) fail_msg("%s: %g at %d", names[i], (double)values[k], k);
         rti_reader_close(r);
     }

@@ -12,7 +12,9 @@
 #include "cli/commands.h"
 #include "cli/expect.h"
 #include "cli/relight/lamps.h"
+#include "cli/relight/relight_help.h"
 #include "cli/relight/relight_output.h"
+#include "cli/relight/relight_rti.h"
 #include "cli/stage_bar.h"
 #include "cli/written.h"
 #include "command/check_files.h"
@@ -23,79 +25,6 @@
 #include "command/photo_hint.h"
 #include "command/photos.h"
 #include "command/standard_input.h"
-
-static const char help[] =
-    "usage: merlin relight PHOTO|DIR --light x,y,z [--light ...] [options]\n"
-    "       merlin relight PHOTO|DIR --direction x,y,z [options]\n"
-    "       merlin relight PHOTO|DIR --lights FILE [options]\n"
-    "       merlin relight PHOTO|DIR --orbit N [options]\n"
-    "       merlin relight PHOTO|DIR --dome N [--lp] [options]\n"
-    "       merlin relight PHOTO|DIR --env FILE [--rotate DEG] [--light x,y,z] [--orbit N] [options]\n"
-    "       merlin relight PHOTO|DIR --found-light [--rotate DEG] [--orbit N] [options]\n\n"
-    "Shows an object under a lamp, an environment, or both instead of the flash. DIR is a folder made by\n"
-    "merlin estimate or merlin stereo (whose surfaces have no gloss), or its maps.exr; a PHOTO (or -,\n"
-    "which is standard input and wants -o) is estimated first.\n"
-    "The camera is at 0,0,0 and looks along -z, x right, y up; the object is near 0,0,-1; the crop around the object\n"
-    "counts as a frame 60 degrees wide.\n\n";
-
-/* separate, since compilers need not accept strings of more than 4095 characters */
-static const char help_on_options[] =
-    "      --light x,y,z    a lamp's place; may be given again, for another picture\n"
-    "      --direction x,y,z\n"
-    "                       a lamp far away, toward which x,y,z points; as bright as one at distance 1; likewise\n"
-    "      --lights FILE    lamps from a file: places, x y z a line, or the directions of an .lp file (far away, but\n"
-    "                       with --near)\n"
-    "      --orbit N        N frames (2 to 240) with the lamp on a circle in front of the object, also as orbit.webp\n"
-    "                       and orbit.gif\n"
-    "      --dome N         N pictures (3 to 999), dome_000.png and on, under far lights spread evenly over the "
-    "frontal\n"
-    "                       hemisphere, for RTI tools and merlin stereo, and mask.webp; all of one exposure\n"
-    "      --lp             with --dome: dome.lp, the light list of RTI tools and of merlin stereo; that of an\n"
-    "                       earlier dome in the same folder is renewed without it, too\n"
-    "      --near           the dome's lamps stand beside the object, and lights.txt lists their places, x y z from\n"
-    "                       the camera, as merlin stereo --near reads them\n"
-    "      --radius R       with --near: how far from 0,0,-1 (default 1)\n"
-    "      --power P        lamps P times as strong (default 1); behind a --light or --direction this one alone,\n"
-    "                       before the first all that have no power of their own; the same holds of\n"
-    "      --color C        linear r,g,b, or #rrggbb as in sRGB, or a temperature such as 2700K\n"
-    "      --exposure EV|auto\n"
-    "                       brighter by EV stops than the photograph, or than a lamp at distance 1 makes a white "
-    "matte\n"
-    "                       surface white; auto: what is brightest just stays below white, as do white matte\n"
-    "                       surfaces (default: auto for --dome, and for a surface of merlin stereo; else 0)\n"
-    "      --format F       png (default) or jpg, of high quality, for pictures of the photograph's size\n"
-    "      --env FILE       surroundings from a latitude-longitude picture (.hdr, .exr), alone or beside each lamp;\n"
-    "                       with --orbit they go round once, and the lamp stays\n"
-    "      --found-light    the light that a model of any light found in the photograph, put back or turned: with\n"
-    "                       --rotate, or once round with --orbit; its flash stays at the lens\n"
-    "      --rotate DEG     turns them about the vertical: at 90 what was straight ahead is to the right\n"
-    "      --env-exposure EV\n"
-    "                       makes them brighter or darker by EV stops (default 0: mean luminance 1)\n"
-    "      --by WAY         brdf (default): the maps' BRDF with cast shadows and the network's global illumination;\n"
-    "                       network: the relighting decoder, made for lamps at distance 1 from 0,0,-1 with z >= -1\n"
-    "      --no-shadows     brdf without cast shadows (lamps and surroundings), as in the paper\n"
-    "      --no-bounces     brdf with cast shadows, but without the network's global illumination\n"
-    "      --matte          brdf without gloss: what least squares, as of RTI tools, finds normals in\n"
-    "  -o, --output DIR     where to (default: relit inside DIR, or inside the photograph's name + .merlin); - writes\n"
-    "                       one picture to standard output\n"
-    "      --frame N        side of the orbit's frames (default: the crop's, at most 512)\n"
-    "      --mask FILE, --point X,Y, --box X,Y,W,H, --size N, --views N\n"
-    "                       for a PHOTO, as in merlin estimate\n"
-    "      --photo-exposure EV|auto\n"
-    "                       for a PHOTO, --exposure of merlin estimate\n"
-    "      --model W        weights: merlin-any (any light), merlin-point (flash alone), merlin-env (flash in a "
-    "room),\n"
-    "                       or a file (default: $MERLIN_MODEL, else merlin-any, and merlin-point for photographs\n"
-    "                       that it sees lit by a flash alone)\n"
-    "      --json           a report as JSON on standard output\n"
-    "  -t, --threads N      how many threads work (default: one a processor)\n"
-    "  -q, --quiet          no other output than errors\n"
-    "  -h, --help           this text\n\n";
-
-static const char help_on_files[] =
-    "Writes relit_000.png and on, and relit.png: of one light the picture itself, of several a sheet with all of "
-    "them;\n"
-    "for an orbit frame_000.png and on, and orbit.png.\n";
 
 /* --exposure */
 typedef struct exposing {
@@ -114,6 +43,7 @@ typedef struct request {
     merlin_image_format format;
     int orbit, frame;
     relight_dome dome;
+    relight_rti rti;
     bool found, near, no_shadows, no_bounces, matte, json, quiet, help;
     int captured; /* whether input is a capture's maps */
 } request;
@@ -178,7 +108,12 @@ static status check_dome(request *r)
         return fail(MERLIN_WRONG_USE, "the relighting decoder knows no distant lights: give --near, too");
     if (r->env && count) return fail(MERLIN_WRONG_USE, "--dome is of lamps alone, without --env");
     r->dome.near = r->near ? r->radius > 0 ? r->radius : 1 : 0;
-    return OK;
+    if (r->output && file_ends_in(r->output, ".ptm")) r->rti.file = file_name_of(r->output);
+    if (r->rti.file && !r->rti.wanted)
+        return fail(MERLIN_WRONG_USE, "%s is a file of --rti ptm or lrgb with a --dome, or of no kind that is known",
+                    r->output);
+    const bool other = r->lamps.count || r->list || r->orbit || r->dome.lp || r->format == MERLIN_JPEG;
+    return r->rti.wanted ? relight_rti_check(&r->rti, count, other) : OK;
 }
 
 static status check_standard_output(const request *r)
@@ -250,6 +185,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"orbit", .integer = &r->orbit, .low = 2, .high = RELIGHT_MOST_FRAMES},
         {"dome", .integer = &r->dome.count, .low = 3, .high = RELIGHT_MOST_DOME},
         {"lp", .flag = &r->dome.lp},
+        {"rti", .take = relight_take_rti, .into = &r->rti},
         {"near", .flag = &r->near},
         {"radius", .take = take_radius, .into = &r->radius},
         {"power", .take = lamp_take_power, .into = &r->lamps, .many = true},
@@ -369,6 +305,7 @@ static status print_json(const request *r, const relight_job *job, const relight
     json_put_number(report, "lights", (double)job->lamps.count);
     json_put_number(report, "orbit", job->orbit);
     json_put_number(report, "dome", job->dome.count);
+    if (job->rti.wanted) json_put_text(report, "rti", relight_rti_name(&job->rti));
     json_put_text(report, "by", r->how == MERLIN_BY_NETWORK ? "network" : "brdf");
     json_put_text(report, "model", merlin_model_name(job->model));
     json_put_number(report, "exposure", round(100 * (double)result->ev) / 100);
@@ -387,7 +324,7 @@ static status announce(const request *r, const relight_job *job, const relight_r
     if (r->json) return print_json(r, job, result, seconds);
     if (r->quiet || to_standard_output(r)) return OK;
     char amount[WRITTEN_WORDS];
-    printf("%s: %s (%.2f s", standard_input_name(r->input), job->output, seconds);
+    printf("%s: %s (%.2f s", standard_input_name(r->input), job->rti.file ? r->output : job->output, seconds);
     if (fabsf(result->ev) >= 0.005f) printf(", exposure %+.2f EV", (double)result->ev);
     printf(", %s)\n", written_words(&result->files, amount));
     return OK;
@@ -404,6 +341,7 @@ static relight_job job_of(const request *r, const char *output)
                        .format = r->format,
                        .ev = r->exposing.ev,
                        .dome = r->dome,
+                       .rti = r->rti,
                        .found = r->found,
                        .turn = r->rotate,
                        .orbit = r->orbit,
@@ -462,7 +400,8 @@ static status relight(request *r, const char *output)
 
 static status run(request *r)
 {
-    char *output = photo_output_inside(r->input, "relit", r->output);
+    char *output = r->rti.file ? file_folder_of(r->output)
+                               : photo_output_inside(r->input, r->rti.wanted ? "rti" : "relit", r->output);
     status s = output ? read_lamps(r) : fail(MERLIN_NO_MEMORY, "no memory for a file name");
     if (s == OK && !file_exists(r->input)) s = fail(MERLIN_BAD_INPUT, "there is no photograph or folder %s", r->input);
     if (s == OK) s = check_photo_and_mask(r->input, r->mask);
@@ -484,9 +423,7 @@ int cmd_relight(int argc, char **argv)
     if (s != OK) {
         code = cli_refuse("relight", s);
     } else if (r.help) {
-        fputs(help, stdout);
-        fputs(help_on_options, stdout);
-        fputs(help_on_files, stdout);
+        relight_print_help();
     } else {
         cli_catch_interrupts();
         s = run(&r);

@@ -26,6 +26,13 @@ typedef struct relight_dome {
     float near; /* distance of the lamps from (0, 0, -1); 0: distant */
 } relight_dome;
 
+/* Instead of a dome's pictures one that viewers relight. */
+typedef struct relight_rti {
+    bool wanted;
+    merlin_rti_basis basis;
+    const char *file; /* the name of a .ptm in the output's folder; NULL: info.json and planes */
+} relight_rti;
+
 typedef struct relight_job {
     merlin_model *model;
     merlin_maps *maps;               /* freed, except for the mask, when they are not needed any more */
@@ -41,6 +48,7 @@ typedef struct relight_job {
     relight_exposing exposing;
     float ev; /* additional stops */
     relight_dome dome;
+    relight_rti rti;
     int orbit; /* number of frames; 0: none. A given environment rotates, with the first of the lights if any; so does
                 * the estimated light; otherwise a lamp moves around */
     int frame; /* side of the frames; 0: the crop's, at most 512 */

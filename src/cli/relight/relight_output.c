@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "cli/relight/relight_parts.h"
+#include "cli/relight/relight_rti.h"
 
 enum { USUAL_FRAME = 512 };
 
@@ -104,7 +105,7 @@ static status write_all(relight_work *w)
     status s = prepare_relighter(w, whole ? 0 : frame_side(job));
     if (s == OK && !both) free_photo_maps(job->maps);
     if (s == OK) s = write_lights(w);
-    if (s == OK && job->dome.count) s = relight_write_dome(w);
+    if (s == OK && job->dome.count) s = job->rti.wanted ? relight_write_rti(w) : relight_write_dome(w);
     if (s == OK && both) s = merlin_relighter_resize(w->relighter, job->maps, frame_side(job));
     if (both) free_photo_maps(job->maps);
     if (s == OK && job->orbit) s = relight_write_orbit(w, frame_side(job));
@@ -117,7 +118,7 @@ status relight_output(const relight_job *job, relight_result *result)
 {
     relight_work w = {.job = job, .result = result};
     *result = (relight_result){0};
-    status s = job->dome.count ? relight_dome_check(job) : OK;
+    status s = job->dome.count && !job->rti.wanted ? relight_dome_check(job) : OK;
     if (s == OK) s = staging_begin(job->output, job->inputs, &w.staging);
     if (s != OK) return s;
     s = write_all(&w);
