@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/api_needs.h"
+#include "base/number.h"
 #include "image/color.h"
 #include "image/coverage.h"
 #include "image/image.h"
@@ -126,21 +127,16 @@ merlin_status merlin_mask_from_pixels(const void *pixels, const merlin_pixel_lay
 
 /* ---- into a buffer ---- */
 
-static float clamped(float x)
-{
-    return x > 0 ? (x < 1 ? x : 1) : 0;
-}
-
 static void write_value(float value, merlin_pixel_type type, bool linear, char *at)
 {
     uint16_t wide;
     float encoded;
     switch (type) {
     case MERLIN_PIXEL_8:
-        *(uint8_t *)at = linear ? (uint8_t)(clamped(value) * 255 + HALF) : srgb_code8(value);
+        *(uint8_t *)at = linear ? (uint8_t)(clamp(value, 0, 1) * 255 + HALF) : srgb_code8(value);
         return;
     case MERLIN_PIXEL_16:
-        wide = (uint16_t)((linear ? clamped(value) : srgb_encode(clamped(value))) * 65535 + HALF);
+        wide = (uint16_t)((linear ? clamp(value, 0, 1) : srgb_encode(clamp(value, 0, 1))) * 65535 + HALF);
         memcpy(at, &wide, sizeof wide);
         return;
     case MERLIN_PIXEL_FLOAT:

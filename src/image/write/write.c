@@ -6,14 +6,10 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/number.h"
 #include "image/color.h"
 #include "image/write/codes.h"
 #include "image/write/jpeg.h"
-
-static float unit(float x)
-{
-    return x > 0 ? (x < 1 ? x : 1) : 0;
-}
 
 static void encode(const float *values, size_t count, img_encoding encoding, void *codes)
 {
@@ -22,9 +18,9 @@ static void encode(const float *values, size_t count, img_encoding encoding, voi
     if (encoding == IMG_SRGB8) srgb_codes8(values, count, codes);
     for (size_t i = 0; encoding != IMG_SRGB8 && i < count; i++) {
         if (encoding == IMG_LINEAR8)
-            out8[i] = (uint8_t)(unit(values[i]) * 255 + 0.5f);
+            out8[i] = (uint8_t)(clamp(values[i], 0, 1) * 255 + 0.5f);
         else
-            out16[i] = (uint16_t)(unit(values[i]) * 65535 + 0.5f);
+            out16[i] = (uint16_t)(clamp(values[i], 0, 1) * 65535 + 0.5f);
     }
 }
 
