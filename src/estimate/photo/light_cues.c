@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "image/color.h"
 #include "image/resize.h"
 #include "optics/camera.h"
@@ -43,17 +44,11 @@ static status planes_new(int width, int height, planes *p)
     return s;
 }
 
-static int compare(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 /* Returns a quantile; sorts the values. */
 static float quantile(float *values, size_t count, float share)
 {
     if (count == 0) return 0;
-    qsort(values, count, sizeof *values, compare);
+    qsort(values, count, sizeof *values, number_ascending);
     return values[(size_t)(share * (float)(count - 1))];
 }
 

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/number.h"
 #include "image/color.h"
 #include "optics/camera.h"
 #include "stereo/capture/shrink.h"
@@ -25,12 +26,6 @@ typedef struct check {
 
 /* ---- residuals ---- */
 
-static int by_value(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 /* Computes the median residual, as outlines and cast shadows, which no model here includes, leave much in few pixels.
  */
 static status typical_residual(const merlin_capture *c, const merlin_surface *s, double *out)
@@ -40,7 +35,7 @@ static status typical_residual(const merlin_capture *c, const merlin_surface *s,
     if (!all) return fail(MERLIN_NO_MEMORY, "no memory for %zu residuals", pixels);
     for (size_t i = 0; i < pixels; i++)
         if (c->mask.data[i] > 0.5f) all[count++] = s->residual.data[i];
-    qsort(all, count, sizeof *all, by_value);
+    qsort(all, count, sizeof *all, number_ascending);
     *out = count ? (double)all[count / 2] : HUGE_VAL;
     free(all);
     return OK;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "base/progress.h"
 #include "estimate/light/found_light.h"
 #include "estimate/photo/model_pair.h"
@@ -79,12 +80,6 @@ static void add(const img *layer, float weight, img *to)
         to->data[i] += weight * layer->data[i];
 }
 
-static int by_size(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 static status bright_part(const subject *on, const img *photo, float *out)
 {
     size_t count = 0, pixels = img_value_count(&on->mask);
@@ -92,7 +87,7 @@ static status bright_part(const subject *on, const img *photo, float *out)
     if (!values) return fail(MERLIN_NO_MEMORY, "no memory for a photograph's brightness");
     for (size_t i = 0; i < pixels; i++)
         if (on->mask.data[i] > 0) values[count++] = color_luminance(photo->data + 3 * i);
-    qsort(values, count, sizeof *values, by_size);
+    qsort(values, count, sizeof *values, number_ascending);
     *out = count ? values[(size_t)(BRIGHT_SHARE * (float)(count - 1))] : 0;
     free(values);
     return OK;
