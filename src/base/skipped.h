@@ -11,7 +11,7 @@
 #ifndef MERLIN_BASE_SKIPPED_H
 #define MERLIN_BASE_SKIPPED_H
 
-#include <cJSON.h>
+#include <cjson/cJSON.h>
 #include <stddef.h>
 
 #include "base/status.h"

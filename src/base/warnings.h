@@ -12,7 +12,7 @@
 #ifndef MERLIN_BASE_WARNINGS_H
 #define MERLIN_BASE_WARNINGS_H
 
-#include <cJSON.h>
+#include <cjson/cJSON.h>
 #include <stddef.h>
 
 #include "merlin/warnings.h"

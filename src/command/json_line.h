@@ -13,7 +13,7 @@
 
 #include "base/staging.h"
 #include "base/status.h"
-#include <cJSON.h>
+#include <cjson/cJSON.h>
 
 /* Prints a report's own text, which has several lines and is freed; NULL: memory ran out. */
 status json_report_print(char *text);

@@ -3,7 +3,7 @@
 #ifndef MERLIN_COMMAND_PHOTOS_H
 #define MERLIN_COMMAND_PHOTOS_H
 
-#include <cJSON.h>
+#include <cjson/cJSON.h>
 #include <stdbool.h>
 #include <stddef.h>
 

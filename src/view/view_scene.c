@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "view/view_scene.h"
 
-#include <cJSON.h>
+#include <cjson/cJSON.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

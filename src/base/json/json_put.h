@@ -15,7 +15,7 @@
 
 #include <stdbool.h>
 
-#include <cJSON.h>
+#include <cjson/cJSON.h>
 
 void json_put_number(cJSON *to, const char *key, double number);
 void json_put_bool(cJSON *to, const char *key, bool is);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* report.json: how a photograph was processed, and the maps' statistics. */
-#include <cJSON.h>
+#include <cjson/cJSON.h>
 #include <math.h>
 
 #include "base/api_needs.h"

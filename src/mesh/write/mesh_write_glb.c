@@ -4,7 +4,7 @@
  *
  * Vertex normals are the triangles'; the normal map holds the photometric normals' difference to them, so that a
  * decimated mesh keeps its shading. Tangents run along the picture's rows, x to the right and y up. */
-#include <cJSON.h>
+#include <cjson/cJSON.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

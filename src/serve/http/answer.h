@@ -3,7 +3,7 @@
 #ifndef MERLIN_SERVE_HTTP_ANSWER_H
 #define MERLIN_SERVE_HTTP_ANSWER_H
 
-#include <cJSON.h>
+#include <cjson/cJSON.h>
 #include <stdint.h>
 
 #include "serve/http/http_library.h"

@@ -11,7 +11,7 @@
 #ifndef MERLIN_SERVE_JOBS_WORK_H
 #define MERLIN_SERVE_JOBS_WORK_H
 
-#include <cJSON.h>
+#include <cjson/cJSON.h>
 
 #include "merlin/merlin.h"
 #include "serve/jobs/form.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* picture_table.h's table as text and as JSON. */
-#include <cJSON.h>
+#include <cjson/cJSON.h>
 #include <math.h>
 #include <stdlib.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* doubt_table.h's table as text and as JSON. */
-#include <cJSON.h>
+#include <cjson/cJSON.h>
 
 #include "base/json/json_put.h"
 #include "base/text/report.h"
