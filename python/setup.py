@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Builds the wheel: CMake makes libmerlin.so, for all x86-64 processors and again for those with AVX2, and both go into
-the package with the weights. MERLIN_LIBRARY names a library that is taken instead of building any."""
+"""Builds the wheel: CMake makes libmerlin.so, for all x86-64 processors and again for those with AVX2 and with AVX-512, and all go
+into the package with the weights. MERLIN_LIBRARY names a library that is taken instead of building any."""
 import glob
 import os
 import platform
@@ -20,7 +20,7 @@ except ImportError:  # setuptools before 70.1
 HERE = os.path.dirname(os.path.abspath(__file__))
 CHECKOUT = os.path.dirname(HERE)
 # Folder in merlin/lib: what CMake's MERLIN_ARCH is; _library.py chooses among them.
-VARIANTS = {"": "", "x86-64-v3": "x86-64-v3"} if platform.machine() == "x86_64" else {"": ""}
+VARIANTS = {"": "", "x86-64-v3": "x86-64-v3", "x86-64-v4": "x86-64-v4"} if platform.machine() == "x86_64" else {"": ""}
 
 
 def project_version():

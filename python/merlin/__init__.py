@@ -25,6 +25,7 @@ from .lights import Environment, Lamp, dome, dome_directions, orbit, read_lamps,
 from .maps import Maps, Mended
 from .mesh import Mesh
 from .model import FoundObject, Model, estimate, find_object, read_shot
+from .photos import PhotoFile, Photos, find_mask, find_masks, is_mask_name, list_photos
 from .pictures import encode_image, read_image, read_mask, resize_image, to_pixels, write_animation, write_image
 from .pictures import write_mask, write_sheet
 from .relighting import Relighter
@@ -48,9 +49,10 @@ def version() -> str:
 __all__ = [
     "BadInputError", "Calibration", "Camera", "CannotWriteError", "Capture", "Circle", "Crop", "DeviceError",
     "Environment", "Exported", "FoundLight", "FoundObject", "Lamp", "Light", "Maps", "Mended", "MerlinError",
-    "MerlinWarning", "Mesh", "MissingFileError", "Model", "NoMemoryError", "Notice", "Relighter", "Shot",
-    "SkippedFile", "StoppedError", "Surface", "Tensor", "Weights", "WrongUseError", "calibrate", "dome",
-    "dome_directions", "encode_image", "estimate", "find_object", "orbit", "read_image", "read_lamps", "read_mask",
-    "read_shot", "resize_image", "set_threads", "stereo", "temperature_color", "to_pixels", "version",
-    "write_animation", "write_image", "write_mask", "write_sheet",
+    "MerlinWarning", "Mesh", "MissingFileError", "Model", "NoMemoryError", "Notice", "PhotoFile", "Photos",
+    "Relighter", "Shot", "SkippedFile", "StoppedError", "Surface", "Tensor", "Weights", "WrongUseError", "calibrate",
+    "dome", "dome_directions", "encode_image", "estimate", "find_mask", "find_masks", "find_object", "is_mask_name",
+    "list_photos", "orbit", "read_image", "read_lamps", "read_mask", "read_shot", "resize_image", "set_threads",
+    "stereo", "temperature_color", "to_pixels", "version", "write_animation", "write_image", "write_mask",
+    "write_sheet",
 ]

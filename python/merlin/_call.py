@@ -173,6 +173,19 @@ def view_of(owner: Any, pointer: Any, shape: tuple, typestr: str = "<f4") -> Any
     return np.asarray(_Memory(owner, address or 0, shape, typestr))
 
 
+def taken_bytes(text: ctypes.c_void_p) -> bytes:
+    """Text that the library gave to a caller, who frees it."""
+    try:
+        return ctypes.string_at(text)
+    finally:
+        free(text)
+
+
+def taken_text(text: ctypes.c_void_p) -> str:
+    """The same as text."""
+    return taken_bytes(text).decode("utf-8", "replace")
+
+
 def written_paths(files: Owner) -> List[str]:
     """The paths of merlin_files."""
     return [os.fsdecode(files.struct.at[i]) for i in range(files.struct.count)]

@@ -17,8 +17,9 @@ from .errors import MissingFileError
 HERE = os.path.dirname(os.path.abspath(__file__))
 CHECKOUT = os.path.dirname(os.path.dirname(HERE))
 _SONAME = "libmerlin.so.0.1"
-# Of the processor, what the System V ABI's level 3 wants of it.
+# The best level of x86-64 first, and what it wants of the processor (System V ABI), as /proc/cpuinfo calls it.
 _LEVEL_3 = {"avx", "avx2", "bmi1", "bmi2", "f16c", "fma", "abm", "movbe", "xsave"}
+_LEVELS = {"x86-64-v4": _LEVEL_3 | {"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"}, "x86-64-v3": _LEVEL_3}
 
 
 def _processor_flags() -> set:
@@ -37,10 +38,8 @@ def _candidates() -> List[str]:
     named = os.environ.get("MERLIN_LIBRARY")
     if named:
         return [named]
-    found = []
-    fast = os.path.join(HERE, "lib", "x86-64-v3", "libmerlin.so")
-    if os.path.exists(fast) and _LEVEL_3 <= _processor_flags():
-        found.append(fast)
+    flags = _processor_flags()
+    found = [os.path.join(HERE, "lib", level, "libmerlin.so") for level, wanted in _LEVELS.items() if wanted <= flags]
     found.append(os.path.join(HERE, "lib", "libmerlin.so"))
     if os.path.exists(os.path.join(CHECKOUT, "CMakePresets.json")):
         found += [os.path.join(CHECKOUT, "build", name, "libmerlin.so") for name in ("release", "product")]

@@ -203,6 +203,26 @@ def test_pictures_for_people_are_written(tmp_path):
     assert sorted(p.name for p in tmp_path.iterdir()) == ["a.webp", "mask.png", "sheet.png"]
 
 
+def test_photographs_and_masks_of_a_folder_are_listed(tmp_path):
+    """By content and by name."""
+    image = np.random.default_rng(3).random((20, 30, 3))
+    for name in ("cup.png", "cup.mask.png", "jug.png"):
+        merlin.write_image(tmp_path / name, image)
+    (tmp_path / "words.txt").write_text("words")
+    listed = merlin.list_photos(tmp_path)
+    cup, jug = str(tmp_path / "cup.png"), str(tmp_path / "jug.png")
+    assert listed.photos == [(cup, str(tmp_path / "cup.mask.png")), (jug, None)]
+    assert "words.txt" in [one.name for one in listed.skipped]
+    assert merlin.find_mask(cup) == str(tmp_path / "cup.mask.png") and merlin.find_mask(jug) is None
+    assert merlin.find_masks(tmp_path, [cup]) == [str(tmp_path / "cup.mask.png")]
+    assert merlin.is_mask_name("cup_mask.png") and not merlin.is_mask_name("cup.png")
+    (tmp_path / "empty").mkdir()
+    for wrong in (lambda: merlin.list_photos(tmp_path / "empty"), lambda: merlin.list_photos(tmp_path / "none"),
+                  lambda: merlin.find_masks(tmp_path / "empty", [cup, jug])):
+        with pytest.raises(ValueError):
+            wrong()
+
+
 def test_an_array_keeps_the_librarys_memory_alive(demo):
     """It is a view, and frees what it shows when it goes."""
     color, _alpha = pictures.from_file(demo)

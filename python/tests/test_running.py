@@ -142,6 +142,22 @@ def test_a_missing_library_is_one_import_error(source, tmp_path):
         assert last.startswith("ImportError: ") and name in last, done.stderr
 
 
+def test_the_library_of_the_processors_level_is_taken(tmp_path, monkeypatch):
+    """The best that there is and that can run."""
+    from merlin import _library
+    for level in ("", "x86-64-v3", "x86-64-v4"):
+        (tmp_path / "lib" / level).mkdir(parents=True, exist_ok=True)
+        (tmp_path / "lib" / level / "libmerlin.so").touch()
+    monkeypatch.setattr(_library, "HERE", str(tmp_path))
+    monkeypatch.delenv("MERLIN_LIBRARY", raising=False)
+    wide = _library._LEVELS["x86-64-v4"]
+    for flags, level in ((wide | {"amx_tile"}, "x86-64-v4"), (wide - {"avx512vl"}, "x86-64-v3"), ({"sse2"}, "")):
+        monkeypatch.setattr(_library, "_processor_flags", lambda flags=flags: flags)
+        assert _library._candidates()[0] == os.path.join(tmp_path, "lib", level, "libmerlin.so")
+    (tmp_path / "lib" / "libmerlin.so").unlink()
+    assert _library._candidates()[-1] == "libmerlin.so.0.1"
+
+
 def resident_kib():
     """Of this process, now."""
     with open("/proc/self/statm", encoding="ascii") as file:
