@@ -71,7 +71,7 @@ typedef struct request {
     const char *mask, *output, *model_name;
     char *weights, *flash_weights; /* files; the second is NULL for none */
     merlin_params params;
-    photo_share share; /* with total 0: all */
+    photo_share share; /* share of the photographs; with total 0: all */
     bool mesh, html, flash, resume, json, quiet, help;
     mesh_names meshes;
     merlin_model *model;
@@ -132,8 +132,8 @@ static status parse(int *argc, char ***argv, request *r)
 /* Times that the report in a photograph's folder cannot contain yet, in seconds. */
 typedef struct lap_times {
     double start, model,
-        compile;       /* of the program: loading it, its weights, its network; only for the first photograph */
-    double read, mask; /* for the first photograph: waiting for both after all this, and 0 */
+        compile;       /* times of the program: loading it, its weights, its network; only for the first photograph */
+    double read, mask; /* times of the first photograph: waiting for both after all this, and 0 */
     double write, total;
 } lap_times;
 

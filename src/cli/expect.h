@@ -20,7 +20,7 @@ size_t expect_estimate(double pixels, stage_cost *stages, size_t count);
 size_t expect_maps(double pixels, stage_cost *stages, size_t count);
 
 typedef struct expect_relight {
-    double pixels;           /* of a picture of the photograph's size */
+    double pixels;           /* number of pixels of a picture of the photograph's size */
     double pictures, frames; /* numbers of these and of an orbit's frames */
     bool environment;
 } expect_relight;

@@ -18,7 +18,7 @@
 
 /* Cost of a stage relative to the others, in any unit. */
 typedef struct stage_cost {
-    const char *name; /* as the watch gets it: a literal */
+    const char *name; /* stage's name as the watch gets it: a literal */
     double cost;
 } stage_cost;
 
@@ -31,7 +31,7 @@ typedef struct stage_bar {
     bool seen, ticking, ending;
     stage_cost stages[STAGE_BAR_MOST];
     size_t count;
-    double from, to; /* of the whole, for the plan */
+    double from, to; /* span of the whole, for the plan */
     char item[32];
     const char *label;
     double began;

@@ -29,17 +29,17 @@ typedef struct cli_option {
     const char **text;
     const char **folder;  /* a folder to write; a picture's name is refused, and "-" unless `printed` */
     const char **picture; /* a picture to write, whose name ends in .png */
-    int *integer;         /* from low to high */
-    size_t *count;        /* from low to high */
-    uint64_t *whole;      /* from low to high */
-    float *real;          /* from low to high */
+    int *integer;         /* integer from low to high */
+    size_t *count;        /* integer from low to high */
+    uint64_t *whole;      /* integer from low to high */
+    float *real;          /* number from low to high */
     long low, high;
     status (*take)(const char *value, void *into); /* callback; returns MERLIN_WRONG_USE for a value it refuses */
     void *into;
     bool printed; /* whether a folder may be "-", standard output */
     bool many;    /* whether it may be repeated, as flags may */
     bool (*is_value)(
-        const char *word); /* with flag and take: the value may be missing; tells whether the next word is one */
+        const char *word); /* with flag and take: whether the next word is the value, which may be missing */
 } cli_option;
 
 enum { CLI_MOST_OPTIONS = 40 }; /* including those of every command */

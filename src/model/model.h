@@ -96,7 +96,7 @@ typedef enum model_part {
     MODEL_TRAINING_SSIM, /* with "relight_ssim" and "relight_brdf_ssim", too, structural dissimilarity of both */
     MODEL_MAPS,          /* MODEL_WHOLE without what depends on a new light, but with the outputs model_features */
     MODEL_INDIRECT, /* the global-illumination network alone: inputs "direct", "albedo", "normal", "roughness", "depth",
-                       "mask", for both lights "environment"; output "indirect" */
+                     * "mask", for both lights "environment"; output "indirect" */
     MODEL_RELIGHT,  /* the relighting decoder alone: inputs model_features, "mask" and "light"; output "relit_direct" */
 } model_part;
 status model_build(const model_config *config, model_part part, nn_graph **out);

@@ -38,13 +38,13 @@ typedef struct relight_job {
     merlin_maps *maps;               /* freed, except for the mask, when they are not needed any more */
     const char *output;              /* folder */
     const char *const *inputs;       /* as in staging_begin */
-    lamp_options lamps;              /* for relit_000 …, of the photograph's size */
+    lamp_options lamps;              /* lamps of relit_000 …, of the photograph's size */
     merlin_environment *environment; /* an orbit turns it; beside the lights, and alone where there are none; or NULL */
     bool found;                      /* use the light estimated from the photograph instead of lamps and environment */
     float turn;                      /* rotation about the vertical in degrees, as for merlin_relight_found */
     merlin_relighting how;
     bool matte;
-    merlin_image_format format; /* of pictures of the photograph's size */
+    merlin_image_format format; /* format of pictures of the photograph's size */
     relight_exposing exposing;
     float ev; /* additional stops */
     relight_dome dome;

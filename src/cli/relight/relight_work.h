@@ -11,9 +11,9 @@ typedef struct relight_work {
     const relight_job *job;
     staging *staging;
     merlin_relighter *relighter;
-    merlin_found_lights found; /* for a job's `found`; an orbit rotates it */
+    merlin_found_lights found; /* lights of a job's `found`; an orbit rotates it */
     relight_result *result;
-    size_t done; /* of relight_count_whole */
+    size_t done; /* number of pictures done of relight_count_whole */
 } relight_work;
 
 /* Returns MERLIN_STOPPED if the job must stop. */

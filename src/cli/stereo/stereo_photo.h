@@ -12,7 +12,7 @@
 typedef struct stereo_photo {
     const char *photo;           /* or a folder of merlin estimate, whose maps are used */
     const char *mask;            /* mask of the photograph, or NULL */
-    const char *weights, *flash; /* as of photo_find_models */
+    const char *weights, *flash; /* weights of photo_find_models */
     merlin_params params;
     merlin_stereo_method method; /* MERLIN_STEREO_AUTO: near */
     const watch *watch;          /* told of the stages; may be NULL */

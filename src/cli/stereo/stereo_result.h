@@ -14,7 +14,7 @@ typedef struct stereo_result {
     float error_white;               /* shown as white */
     pinhole camera;
     warnings doubts;
-    skipped_files skipped; /* of the folder */
+    skipped_files skipped; /* skipped files of the folder */
 } stereo_result;
 
 void stereo_result_free(stereo_result *r);

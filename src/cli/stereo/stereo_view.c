@@ -10,7 +10,7 @@ enum { MOST_CUTS = 12 };
 
 typedef struct view {
     const stereo_result *surface;
-    vec3 low, high; /* of the turned points */
+    vec3 low, high; /* bounds of the turned points */
     float scale;
     int stride; /* pixels of the maps from one corner of a square to the next */
     img *out;
@@ -67,7 +67,7 @@ static void find_bounds(view *v)
         }
     float extent = fmaxf(fmaxf(v->high.x - v->low.x, v->high.y - v->low.y), 1e-6f);
     v->scale = FILL * (float)v->out->width / extent;
-    float seen = v->scale * pixel; /* in pixels of the view */
+    float seen = v->scale * pixel; /* size in pixels of the view */
     v->stride = seen < LEAST_SQUARE ? (int)(LEAST_SQUARE / fmaxf(seen, 1e-3f)) : 1;
 }
 

@@ -146,7 +146,7 @@ static status examine_mask(examination *e)
 
 typedef struct normals {
     size_t none, first, off, coded, away; /* numbers of normals without length, not unit, coded as colours, with z below
-                                             0, and the first without length */
+                                           * 0, and the first without length */
 } normals;
 
 static bool is_nearly_unit(vec3 v)

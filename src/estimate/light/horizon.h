@@ -24,8 +24,8 @@ enum { HORIZON_AZIMUTHS = 24 };
 
 typedef struct horizon {
     img cosine;       /* HORIZON_AZIMUTHS channels of cosines of the angle to the line of sight; -1: nothing hides */
-    uint32_t *closed; /* as many words; bit i: hidden where the cosine is (i + 1/2) / 16 - 1; all bits above the horizon
-                         are set */
+    uint32_t *closed; /* words of as many azimuths; bit i: hidden where the cosine is (i + 1/2) / 16 - 1; all bits above
+                       * the horizon are set */
     camera_lens lens;
 } horizon;
 

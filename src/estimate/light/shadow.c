@@ -82,7 +82,7 @@ typedef struct march {
     float x, y, inverse;                /* its start; pixel centres have integer coordinates */
     float step_x, step_y, step_inverse; /* increments per pixel along the longer axis */
     float first, count; /* numbers of steps: to the first pixel centre that counts along that axis, and to the end of
-                           the ray or of the frame */
+                         * the ray or of the frame */
     bool across;        /* whether the longer axis is x */
     float way;          /* scene units to the end, times the end's inverse depth, per step */
     float pixel;        /* size of a pixel in scene units at the start */

@@ -20,7 +20,7 @@ typedef struct object_search {
     float exposure; /* factor by which the photograph is multiplied */
     object_view view;
     img away;     /* distance of border_distance */
-    float *prior; /* for object_ground, as are the next two */
+    float *prior; /* fields of object_ground, as are the next two */
     uint8_t *fixed, *wanted;
     uint8_t *ring;  /* 1 within the border's width, or outside the hint's box */
     uint8_t *start; /* first guess of the next candidate */

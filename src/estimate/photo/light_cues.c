@@ -169,7 +169,7 @@ static status make_planes(const surface *maps, const img *photo, const light_fra
 /* ---- slopes ---- */
 
 typedef struct slope {
-    float x, y; /* to the right and down */
+    float x, y; /* components to the right and down */
 } slope;
 
 static slope slope_at(const img *plane, int x, int y)

@@ -8,7 +8,7 @@
 
 struct merlin_model {
     network *network;
-    network *flash; /* for photographs lit by a flash only; NULL: `network` is used for them, too */
+    network *flash; /* network for photographs lit by a flash only; NULL: `network` is used for them, too */
 };
 
 /* Opens a model. flash: weights for merlin_model_add_flash, or NULL. */

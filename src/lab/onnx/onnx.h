@@ -19,7 +19,7 @@ typedef struct onnx_options {
     int size;                         /* pixels a side of the pictures, one at a time; 0: any number of any multiple of
                                        * MODEL_SIZE_MULTIPLE, whose dimensions are named "batch", "height", "width" */
     const char *const (*metadata)[2]; /* pairs of key and value that the file carries, ended by a NULL key; may be
-                                         NULL */
+                                       * NULL */
 } onnx_options;
 
 /* Called for each input and output that was written, in the graph's order. */

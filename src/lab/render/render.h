@@ -28,7 +28,7 @@ typedef struct image_settings {
     float lamp_angle[SAMPLE_MAX_LAMPS]; /* degrees; see lamp_angles */
     int lamp_angles; /* > 0: number of lamps, points as far away as the camera, at these angles from the line to it */
     int lamps;       /* number of images under lamps of any position and size (render/sample_lamps.h), at most
-                        SAMPLE_MAX_LAMPS */
+                      * SAMPLE_MAX_LAMPS */
     bool bounces;    /* store bounce 2 and bounce 3 separately as well */
 } image_settings;
 

@@ -29,7 +29,7 @@ typedef struct sample_lamp {
     vec3 at; /* position; for a distant lamp, whose light is parallel, the unit direction toward it */
     bool distant;
     float radius;   /* 0: a point; else of a disc that faces the middle; for a distant lamp the tangent of its angular
-                       radius */
+                     * radius */
     img direct;     /* 3 channels, bounce 1, cast shadows included */
     img indirect;   /* 3 channels, bounces 2 and 3 */
     img visibility; /* 1: share of bounce 1 that other parts of the object let through; 0 where there would be none */

@@ -44,7 +44,7 @@ typedef struct train_view {
     float *sh;  /* 27 values: that environment; model_encode_sh of it after train_prepare */
     /* of a data set with lamps, else NULL: */
     float *lamps; /* TRAIN_LAMPS images of TRAIN_LAMP_VALUES: the object under each, bounces included, and its
-                     visibility */
+                   * visibility */
     train_lamp lamp[TRAIN_LAMPS];
     int lamp_count;
     camera lens; /* size × size */

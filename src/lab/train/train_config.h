@@ -30,12 +30,12 @@ typedef struct train_config {
     /* Other optional settings: */
     double albedo_weight;       /* of the albedo loss; by default 1, as in the paper */
     double relight_brdf_weight; /* of a loss for relighting by the maps' BRDF besides the network's; 0: none, as in the
-                                   paper */
+                                 * paper */
     double ssim_weight;   /* of the structural dissimilarity of relit images, by network and by BRDF; 0: none, as in the
-                             paper (docs/notes/similarity_in_training.md) */
+                           * paper (docs/notes/similarity_in_training.md) */
     double dark_target;   /* setting B: share of targets without an environment */
     double average_decay; /* of the weights' mean (train/average.h), which is validated and exported; 0: the last
-                             weights are */
+                           * weights are */
     double memory_gib;    /* samples beyond this are read from disk each time */
     int validation_count; /* number of the folder's last samples that are for validation; a multiple of batch */
     int validation_steps; /* between validations; 0: one after the last step, and no weights before */

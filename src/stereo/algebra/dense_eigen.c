@@ -6,7 +6,7 @@
 
 #include "stereo/algebra/dense.h"
 
-enum { MOST_TURNS = 60 }; /* for each eigenvalue; two are usual */
+enum { MOST_TURNS = 60 }; /* steps for each eigenvalue; two are usual */
 
 static double dot(const double *restrict a, const double *restrict b, size_t n)
 {

@@ -36,9 +36,9 @@ struct merlin_capture {
     merlin_lighting lighting;
     bool intensities_known;
     bool about_object; /* whether positions are relative to the object; pst_place_lights converts them to the camera's
-                          space */
+                        * space */
     bool lights_in_order; /* whether the lights' file names none of the pictures, so that they were assigned in the
-                             order of their names */
+                           * order of their names */
     warnings noticed;     /* warnings of the reader, which pst_doubts reports */
     pinhole camera;
     int bits;              /* bits of a value in the pictures' files: 8, 16 or 32 (floats); 0: pictures in memory */

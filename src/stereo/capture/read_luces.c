@@ -10,7 +10,7 @@
 #include "stereo/capture/luces.h"
 
 enum { TEXT_MOST = 1 << 22, CAMERA_NUMBERS = 7, NUMBERS_MOST = 16 };
-static const double LARGEST = 1e7; /* in mm or pixels: captures are not ten kilometres large */
+static const double LARGEST = 1e7; /* limit in mm or pixels: captures are not ten kilometres large */
 
 void luces_free(luces_params *p)
 {

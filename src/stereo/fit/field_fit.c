@@ -20,13 +20,13 @@ typedef enum field_task { FIT, REFINE, SEARCH, SECOND, PREDICT, SPREAD, OUTLIERS
 typedef struct fit_job {
     const pst_field *field;
     field_task task;
-    pst_around around;     /* for spread and outliers */
-    float limit;           /* for search */
-    float contradiction;   /* for outliers: cost of differing from all neighbours */
-    pst_shading *next;     /* for spread and outliers: results that will replace the field's */
-    float *weight, *model; /* for model: padded lights per pixel */
-    pst_fall_off *fall;    /* for fall-off */
-    merlin_surface *out;   /* for store */
+    pst_around around;     /* neighbours, for spread and outliers */
+    float limit;           /* cost from which on a pixel is searched again */
+    float contradiction;   /* cost of differing from all neighbours, for outliers */
+    pst_shading *next;     /* results that will replace the field's, for spread and outliers */
+    float *weight, *model; /* padded lights per pixel, for model */
+    pst_fall_off *fall;    /* results of fall-off */
+    merlin_surface *out;   /* results of store */
     float *x, *y, *z;      /* directions of distant lights, padded */
     float *cost;           /* cost of each pixel */
     double total;

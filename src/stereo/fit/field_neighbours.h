@@ -15,7 +15,7 @@
 
 typedef struct pst_around {
     const pst_field *field;
-    const int32_t *slot; /* from pst_field_slots */
+    const int32_t *slot; /* indices from pst_field_slots */
     const bool *news;    /* per pixel: whether its shading is new to the neighbours; NULL: all are */
 } pst_around;
 

@@ -20,7 +20,7 @@ typedef struct pst_effort {
 void pst_effort_add(pst_effort *e, size_t fits);
 
 typedef struct pst_problem {
-    const merlin_capture *capture; /* with at most PST_MAX_LIGHTS pictures, except for ls */
+    const merlin_capture *capture; /* capture with at most PST_MAX_LIGHTS pictures, except for ls */
     const merlin_light *light; /* count; intensities above 0. The capture's own unless a solver has found better ones */
     uint32_t *pixel;           /* indices of the mask's pixels, rows from the top; NULL for ls, which processes all */
     size_t pixel_count;

@@ -14,12 +14,12 @@
 
 typedef struct pst_integration {
     bool preserve_edges; /* discontinuity-preserving method instead of least squares: keeps steps that the normals
-                            reveal, but may also cut where the normals have errors */
+                          * reveal, but may also cut where the normals have errors */
     const img *prior;    /* depth toward which the result is weakly pulled, 1 channel, or NULL */
     float prior_weight;
     const img *trust;   /* factor of the prior's weight for each pixel, 1 channel; NULL: 1 everywhere */
     bool from_prior;    /* whether preserve_edges starts from the prior's steps instead of from least squares, which
-                           spreads them: a few solutions instead of fifty. Requires a prior at every pixel of the mask */
+                         * spreads them: a few solutions instead of fifty. Requires a prior at every pixel of the mask */
     const watch *watch; /* receives progress, "integrating", and may stop the work (MERLIN_STOPPED); may be NULL */
 } pst_integration;
 

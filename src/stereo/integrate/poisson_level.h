@@ -13,7 +13,7 @@ enum { POISSON_STRIPS = 64 };
 
 /* A level: a grid, or a graph. */
 typedef struct poisson_level {
-    const poisson_grid *grid; /* of the finest level only; NULL: the graph */
+    const poisson_grid *grid; /* grid, on the finest level only; NULL: the graph */
     poisson_graph graph;
     int count;
     int *parent; /* count: the node's parent on the next level */

@@ -212,7 +212,7 @@ static void add_pictures(const ls_lights *all, portion now, portion next, int co
 /* The matrix of the most recent word of bits. */
 typedef struct matrix_memory {
     uint32_t word;
-    float matrix[PRODUCTS]; /* for no lights at first */
+    float matrix[PRODUCTS]; /* matrix of the word; of no lights at first */
 } matrix_memory;
 
 /* Computes the matrix of a word without branches, as shadows are hard to predict. */

@@ -52,7 +52,7 @@ static const double least_factor = 1.3, least_added = 0.1;
 typedef struct near_job {
     const pst_problem *problem;
     merlin_surface *out;
-    pst_field sample; /* for the scale */
+    pst_field sample; /* pixels for the scale */
     pinhole camera;
     pst_lobe lobe;
     pst_shading *shading; /* one per pixel */

@@ -31,7 +31,7 @@ typedef struct search {
 
 /* Interpretation of the lights. */
 typedef struct placing {
-    float distance;  /* from the camera to their centre */
+    float distance;  /* distance from the camera to their centre */
     bool held, near; /* held: whether the object's mean distance is the same */
 } placing;
 

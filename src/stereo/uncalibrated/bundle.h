@@ -22,7 +22,7 @@
 typedef struct bundle_cell {
     int corner[4]; /* left above, right above, left below, right below */
     float x, y;    /* the ray of its centre is (x, y, -1) */
-    float albedo;  /* of values in radiance times squared distance, with lights of power 1 */
+    float albedo;  /* albedo of values in radiance times squared distance, with lights of power 1 */
     float level;   /* ordinary value of the cell */
 } bundle_cell;
 
