@@ -34,6 +34,14 @@ for name in maps.exr albedo.png normal.png mask.png; do
 done
 fetches "$job" viewer.html viewer.html
 grep -q '"name":"demo"' viewer.html || complain "the viewer has no name"
+asks 200 . "$site/v1/jobs/$job/files.zip"
+if command -v unzip >/dev/null; then
+    unzip -q body -d unzipped || complain "the archive is broken: $(unzip -t body | tail -3)"
+    cmp -s unzipped/maps.exr own/maps.exr && cmp -s unzipped/viewer.html viewer.html || complain "the archive has other files"
+else
+    echo "no unzip here: the archive is not opened"
+fi
+asks 404 "no such job" "$site/v1/jobs/00000000000000000000000000000000/files.zip"
 [[ -z $(ls -A tmp/merlin-serve-*/"$job"/in) ]] || complain "the upload stays: $(ls tmp/merlin-serve-*/"$job"/in)"
 
 echo "a mask is found, corrected and sent back, at a page's size"

@@ -98,7 +98,8 @@ export class Card {
         if (view)
             this.body.append(make("iframe", { src: view.url, title: `Viewer of ${this.title}`, allow: "fullscreen" }),
                 make("p", {}, make("a", { href: view.url, target: "_blank", rel: "noopener" }, "Open the viewer in a tab of its own")));
-        this.body.append(make("details", {}, make("summary", {}, `Files (${job.files.length})`), make("ul", { class: "files" }, ...files_of(job))));
+        this.body.append(make("details", {}, make("summary", {}, `Files (${job.files.length})`),
+            make("p", {}, make("a", { href: `${job.url}/files.zip`, download: `${this.title.replace(/\.[^.]*$/, "")}.zip` }, "All of them, as a ZIP archive")), make("ul", { class: "files" }, ...files_of(job))));
         if (job.files.some((file) => file.name === "maps.exr")) this.body.append(lamps(job, this.title));
         say(`${this.title} is done`);
     }

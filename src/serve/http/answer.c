@@ -68,7 +68,7 @@ static const char *type_of(const char *name)
 {
     static const char *const types[][2] = {
         {".html", "text/html; charset=utf-8"}, {".png", "image/png"},  {".json", "application/json"},
-        {".glb", "model/gltf-binary"},         {".txt", "text/plain"},
+        {".glb", "model/gltf-binary"},         {".txt", "text/plain"}, {".zip", "application/zip"},
     };
     for (size_t i = 0; i < sizeof types / sizeof *types; i++)
         if (file_ends_in(name, types[i][0])) return types[i][1];

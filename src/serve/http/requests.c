@@ -97,6 +97,16 @@ static enum MHD_Result answer_status(const request_site *site, struct MHD_Connec
     return answer_json(c, MHD_HTTP_OK, o, NULL);
 }
 
+static enum MHD_Result answer_archive(const request_site *site, struct MHD_Connection *c, const char *id)
+{
+    int descriptor;
+    uint64_t bytes;
+    status made;
+    if (!jobs_open_archive(site->jobs, id, &descriptor, &bytes, &made)) return no_job(c);
+    if (made != OK) return answer_error(c, MHD_HTTP_INSUFFICIENT_STORAGE, "no_room", status_message());
+    return answer_file(c, descriptor, bytes, "merlin.zip");
+}
+
 /* Answers requests for a job; rest: what follows /v1/jobs/. */
 static enum MHD_Result answer_job(const request_site *site, struct MHD_Connection *c, const char *rest, bool remove)
 {
@@ -111,6 +121,7 @@ static enum MHD_Result answer_job(const request_site *site, struct MHD_Connectio
         cJSON *told = jobs_tell(site->jobs, id);
         return told ? answer_json(c, MHD_HTTP_OK, told, NULL) : no_job(c);
     }
+    if (!remove && strcmp(rest, "/files.zip") == 0) return answer_archive(site, c, id);
     if (remove || strncmp(rest, files, sizeof files - 1) != 0) return not_found(c);
     const char *name = rest + sizeof files - 1;
     const int descriptor = jobs_open_file(site->jobs, id, name, &bytes);

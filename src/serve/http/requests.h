@@ -7,7 +7,8 @@
  *     POST   /v1/KIND                       an upload becomes a job (jobs/work.h lists the kinds)
  *     GET    /v1/jobs/ID                    its progress, and the names of its files
  *     DELETE /v1/jobs/ID                    stops it and removes its files
- *     GET    /v1/jobs/ID/files/NAME         one of these */
+ *     GET    /v1/jobs/ID/files/NAME         one of these
+ *     GET    /v1/jobs/ID/files.zip          all of them */
 #ifndef MERLIN_SERVE_HTTP_REQUESTS_H
 #define MERLIN_SERVE_HTTP_REQUESTS_H
 

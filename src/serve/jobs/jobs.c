@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "base/json/json_put.h"
-#include "serve/jobs/job.h"
+#include "serve/jobs/job_files.h"
 
 struct jobs {
     jobs_params params;
@@ -305,6 +305,19 @@ int jobs_open_file(jobs *q, const char *id, const char *name, uint64_t *bytes)
     }
     pthread_mutex_unlock(&q->lock);
     return descriptor;
+}
+
+bool jobs_open_archive(jobs *q, const char *id, int *descriptor, uint64_t *bytes, status *made)
+{
+    job_files files = {.count = 0};
+    pthread_mutex_lock(&q->lock);
+    const job *j = find(q, id);
+    const bool is_done = j && j->state == JOB_DONE;
+    *made = is_done ? job_files_open(j, q->params.store, &files) : fail(MERLIN_BAD_INPUT, "there is no such job");
+    pthread_mutex_unlock(&q->lock);
+    if (*made == OK) *made = job_files_archive(&files, q->params.store, descriptor, bytes);
+    job_files_close(&files);
+    return is_done;
 }
 
 void jobs_put(jobs *q, cJSON *to)

@@ -49,6 +49,9 @@ cJSON *jobs_tell(jobs *q, const char *id);
 bool jobs_remove(jobs *q, const char *id);
 /* Opens one of a job's results for reading; -1: there is none. */
 int jobs_open_file(jobs *q, const char *id, const char *name, uint64_t *bytes);
+/* Makes an archive of all of them, to be read from the descriptor. Returns false if there is no such job, or it is not
+ * done; then, and if the archive cannot be made, *made is not OK. */
+bool jobs_open_archive(jobs *q, const char *id, int *descriptor, uint64_t *bytes, status *made);
 /* Removes jobs that have been kept long enough. */
 void jobs_expire(jobs *q);
 /* Adds the number of waiting jobs, and of those that are kept. */

@@ -158,6 +158,18 @@ void store_empty(const store *s, const char *id, store_part part)
     (void)mkdir(path, 0700);
 }
 
+status store_open_unnamed(const store *s, int *descriptor)
+{
+    char path[PATH_MAX];
+    *descriptor = open(s->folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    if (*descriptor >= 0) return OK;
+    snprintf(path, sizeof path, "%.*s/unnamed-XXXXXX", PATH_MAX - 256, s->folder);
+    *descriptor = mkostemp(path, O_CLOEXEC); /* of a file system that knows no others */
+    if (*descriptor < 0) return fail_by_errno(MERLIN_CANNOT_WRITE, "the server cannot make a file");
+    (void)unlink(path);
+    return OK;
+}
+
 bool store_is_id(const char *text)
 {
     return strspn(text, "0123456789abcdef") == STORE_ID - 1 && !text[STORE_ID - 1];

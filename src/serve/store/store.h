@@ -36,6 +36,9 @@ void store_remove(const store *s, const char *id);
 /* Removes the files of one of them, but not the folder. */
 void store_empty(const store *s, const char *id, store_part part);
 
+/* Opens a file for writing and reading that has no name, and is gone when it is closed. */
+status store_open_unnamed(const store *s, int *descriptor);
+
 /* Composes the path of a file in a job's folder, or of the folder if name is NULL; returns it. Both names are the
  * program's own or come from safe_name (store/safe_name.h). */
 const char *store_path(const store *s, const char *id, store_part part, const char *name, char path[PATH_MAX]);
