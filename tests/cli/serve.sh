@@ -67,6 +67,16 @@ cmp -s got relit/relit.png || complain "relight of maps that were sent is anothe
 radiance room.hdr 32 6 64
 relit=$(submit relight -F photo=@"$demo" -F environment=@room.hdr -F rotate=90 -F side=64)
 told "$relit" | grep -q '"state":"done"' || complain "a room: $(told "$relit")"
+"$MERLIN" relight own --direction 1,0.4,0.3 --power 2 --no-bounces -o relit -q
+relit=$(submit relight -F job="$maps" -F direction=1,0.4,0.3,2 -F by=direct)
+fetches "$relit" relit.png got
+cmp -s got relit/relit.png || complain "a lamp far away is another than merlin relight's"
+relit=$(submit relight -F job="$maps" -F light=0.7,0.3,-0.4,1,0.5,0.2 -F light=-1,0,0 -F together=1 -F by=direct)
+told "$relit" | grep -q '"files":\[{"name":"relit.png"' || complain "two lamps at once: $(told "$relit")"
+relit=$(submit relight -F job="$maps" -F orbit=3 -F side=64 -F by=direct)
+told "$relit" | grep -q relit_002.png || complain "an orbit: $(told "$relit")"
+asks 400 "one without the others" "$site/v1/relight" -F job="$maps" -F light=0,0,0 -F orbit=3
+asks 400 "a power is 0 or more" "$site/v1/relight" -F job="$maps" -F light=0,0,0,-1
 asks 400 'relight wants a light' "$site/v1/relight" -F job="$maps"
 asks 400 'one of photo, maps' "$site/v1/relight" -F light=0,0,0
 asks 400 'light wants 3 numbers' "$site/v1/relight" -F job="$maps" -F light=1,2

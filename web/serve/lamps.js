@@ -5,7 +5,7 @@ import { follow, submit } from "./api.js";
 import { make, say } from "./parts.js";
 
 const places = { left: "-0.8,0.3,-0.5", right: "0.8,0.3,-0.5", above: "0,0.9,-0.6", below: "0,-0.9,-0.6", flash: "0,0,0" };
-const names = { left: "From the left", right: "From the right", above: "From above", below: "From below", flash: "At the lens", own: "A lamp at x, y, z", room: "A room (panorama)" };
+const names = { left: "From the left", right: "From the right", above: "From above", below: "From below", flash: "At the lens", own: "A lamp at x, y, z", orbit: "A lamp on an orbit, 12 pictures", room: "A room (panorama)" };
 
 export function lamps(job, title) {
     const where = make("select", { "aria-label": "Light" }, ...Object.entries(names).map(([value, words]) => make("option", { value }, words)));
@@ -22,14 +22,14 @@ export function lamps(job, title) {
     form.addEventListener("submit", async (e) => {
         e.preventDefault();
         if (where.value === "room" && !room.files.length) return void (words.textContent = "Choose a panorama, .hdr or .exr.");
-        const field = where.value === "room" ? ["environment", room.files[0]] : ["light", places[where.value] || place.value];
+        const field = where.value === "room" ? ["environment", room.files[0]] : where.value === "orbit" ? ["orbit", "12"] : ["light", places[where.value] || place.value];
         button.disabled = true;
         words.textContent = "Lighting";
         try {
             const now = await follow(await submit("relight", [["job", job.id], field], null), () => {});
             if (now.state !== "done") throw new Error(now.error || "It was cancelled.");
-            const file = now.files[0], label = `${title}: ${names[where.value].toLowerCase()}`;
-            pictures.prepend(make("a", { href: file.url, download: file.name }, make("img", { src: file.url, alt: label })));
+            const label = `${title}: ${names[where.value].toLowerCase()}`;
+            pictures.prepend(...now.files.map((file) => make("a", { href: file.url, download: file.name }, make("img", { src: file.url, alt: label }))));
             words.textContent = "";
             say(`${label} is done`);
         } catch (error) {

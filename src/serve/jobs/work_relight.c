@@ -16,8 +16,9 @@ enum { MOST_LIGHTS = 64, LEAST_SIDE = 16, MOST_SIDE = 4096, FARTHEST = 1000 };
 typedef struct relight_request {
     merlin_params params; /* of a photograph */
     bool photo;
-    float lights[MOST_LIGHTS][3];
-    int light_count;
+    merlin_lamp lamps[MOST_LIGHTS];
+    int lamp_count;
+    int together; /* 1: all lamps at once, else a picture each */
     float rotate, room_exposure;
     int found, side; /* side 0: the photograph's size */
     merlin_relighting how;
@@ -25,14 +26,50 @@ typedef struct relight_request {
 
 /* ---- options ---- */
 
-static status read_lights(const form *f, relight_request *r)
+/* Reads the index-th value of light or direction: x, y, z, and perhaps a power for all channels or for each. */
+static status read_lamp(const form *f, const char *key, size_t index, merlin_lamp *out)
 {
-    status s = OK;
-    for (int i = 0; i < MOST_LIGHTS && form_value_at(f, "light", (size_t)i) && s == OK; i++) {
-        s = form_numbers(f, "light", (size_t)i, -FARTHEST, FARTHEST, 3, r->lights[i]);
-        r->light_count = i + 1;
-    }
+    const char *text = form_value_at(f, key, index);
+    int count = 1;
+    float numbers[6] = {0};
+    for (; text && *text; text++)
+        count += *text == ',';
+    if (count != 3 && count != 4 && count != 6)
+        return fail(MERLIN_WRONG_USE, "%s wants 3 numbers x,y,z, and perhaps a power or three, not \"%s\"", key,
+                    form_value_at(f, key, index));
+    status s = form_numbers(f, key, index, -FARTHEST, FARTHEST, count, numbers);
+    const bool far_away = strcmp(key, "direction") == 0;
+    *out = far_away ? merlin_lamp_toward(numbers[0], numbers[1], numbers[2])
+                    : merlin_lamp_at(numbers[0], numbers[1], numbers[2]);
+    for (int c = 0; c < 3 && count > 3; c++)
+        out->power[c] = numbers[count == 6 ? 3 + c : 3];
+    if (s == OK && (out->power[0] < 0 || out->power[1] < 0 || out->power[2] < 0))
+        s = fail(MERLIN_WRONG_USE, "%s: a power is 0 or more", key);
+    if (s == OK && far_away && numbers[0] == 0 && numbers[1] == 0 && numbers[2] == 0)
+        s = fail(MERLIN_WRONG_USE, "direction wants a length, not 0,0,0");
     return s;
+}
+
+/* Reads light, direction, or the number of lamps on an orbit or a dome. */
+static status read_lamps(const form *f, relight_request *r)
+{
+    static const char *const keys[] = {"light", "direction"};
+    int orbit = 0, dome = 0;
+    status s = OK;
+    for (size_t k = 0; k < sizeof keys / sizeof *keys; k++)
+        for (size_t i = 0; form_value_at(f, keys[k], i) && s == OK; i++) {
+            if (r->lamp_count == MOST_LIGHTS) return fail(MERLIN_WRONG_USE, "more than %d lamps", MOST_LIGHTS);
+            s = read_lamp(f, keys[k], i, &r->lamps[r->lamp_count++]);
+        }
+    if (s == OK) s = form_integer(f, "orbit", 2, MOST_LIGHTS, &orbit);
+    if (s == OK) s = form_integer(f, "dome", 2, MOST_LIGHTS, &dome);
+    if (s == OK && (r->lamp_count > 0) + (orbit > 0) + (dome > 0) > 1)
+        s = fail(MERLIN_WRONG_USE, "lamps, orbit and dome go one without the others");
+    if (s != OK || (!orbit && !dome)) return s;
+    r->lamp_count = orbit ? orbit : dome;
+    for (int i = 0; i < r->lamp_count; i++)
+        r->lamps[i] = orbit ? merlin_orbit_lamp(i, orbit) : merlin_dome_lamp(i, dome, 0);
+    return OK;
 }
 
 static status check_source(const form *f, relight_request *r)
@@ -49,13 +86,16 @@ static status check_source(const form *f, relight_request *r)
 static status check_lights(const form *f, const relight_request *r)
 {
     const bool room = form_find_file(f, "environment") != NULL;
-    if (!room && !r->found && r->light_count == 0)
-        return fail(MERLIN_WRONG_USE, "relight wants a light: light, environment or found");
-    if (r->found && (room || r->light_count)) return fail(MERLIN_WRONG_USE, "found goes without light and environment");
+    if (!room && !r->found && r->lamp_count == 0)
+        return fail(MERLIN_WRONG_USE, "relight wants a light: light, direction, orbit, dome, environment or found");
+    if (r->found && (room || r->lamp_count)) return fail(MERLIN_WRONG_USE, "found goes without lamps and environment");
     if (r->found && (r->side || r->how == MERLIN_BY_NETWORK))
         return fail(MERLIN_WRONG_USE, "found goes without side, and not by network");
-    if (room && r->light_count > 1) return fail(MERLIN_WRONG_USE, "with an environment there is one light at most");
-    return OK;
+    status s = OK;
+    if (room && r->lamp_count == 0) s = merlin_relighting_check(r->how, NULL, 1);
+    for (int i = 0; i < r->lamp_count && s == OK; i++)
+        s = merlin_relighting_check(r->how, &r->lamps[i], room);
+    return s;
 }
 
 static status check(const form *f, const work_limits *limits, void **request)
@@ -64,6 +104,10 @@ static status check(const form *f, const work_limits *limits, void **request)
                                      {"maps", FORM_FILE, 1},
                                      {"job", FORM_VALUE, 1},
                                      {"light", FORM_VALUE, MOST_LIGHTS},
+                                     {"direction", FORM_VALUE, MOST_LIGHTS},
+                                     {"orbit", FORM_VALUE, 1},
+                                     {"dome", FORM_VALUE, 1},
+                                     {"together", FORM_VALUE, 1},
                                      {"environment", FORM_FILE, 1},
                                      {"rotate", FORM_VALUE, 1},
                                      {"environment_exposure", FORM_VALUE, 1},
@@ -79,7 +123,8 @@ static status check(const form *f, const work_limits *limits, void **request)
     if (!r) return fail(MERLIN_NO_MEMORY, "no memory for a request");
     status s = form_check(f, "relight", known);
     if (s == OK) s = check_source(f, r);
-    if (s == OK) s = read_lights(f, r);
+    if (s == OK) s = read_lamps(f, r);
+    if (s == OK) s = form_flag(f, "together", &r->together);
     if (s == OK) s = form_real(f, "rotate", -360, 360, &r->rotate);
     if (s == OK) s = form_real(f, "environment_exposure", -20, 20, &r->room_exposure);
     if (s == OK) s = form_flag(f, "found", &r->found);
@@ -123,24 +168,31 @@ typedef struct relight_work {
     const relight_request *request;
     const merlin_maps *maps;
     const merlin_environment *room;
-    merlin_relighter *relighter; /* of the square, if a size is given; else NULL */
+    merlin_relighter *relighter; /* NULL: by the light that was found */
 } relight_work;
 
-static status make(const relight_work *k, const float *light, merlin_image *out)
+/* The square under these lamps or, of no asked size, in the photograph's frame. */
+static status make(const relight_work *k, const merlin_lamp *lamps, int count, merlin_image *out)
 {
     const relight_request *r = k->request;
-    merlin_model *model = k->context->model;
-    if (r->found) return merlin_relight_found(model, k->maps, r->rotate, r->how, out);
-    if (k->relighter) return merlin_relighter_render(k->relighter, light, k->room, out);
-    if (k->room) return merlin_relight_environment(model, k->maps, k->room, light, r->how, out);
-    return merlin_relight(model, k->maps, light, r->how, out);
+    merlin_image square = {0};
+    if (r->found) return merlin_relight_found(k->context->model, k->maps, r->rotate, r->how, out);
+    status s = merlin_relighter_render_lamps(k->relighter, lamps, count, k->room, &square);
+    if (s == OK && r->side) {
+        *out = square;
+        return OK;
+    }
+    if (s == OK) s = merlin_relighter_place(k->relighter, &square, out);
+    merlin_image_free(&square);
+    return s;
 }
 
 static status make_all(const relight_work *k)
 {
     const work_context *w = k->context;
     const relight_request *r = k->request;
-    const int count = r->light_count > 1 ? r->light_count : 1;
+    const bool each = r->lamp_count > 1 && !r->together;
+    const int count = each ? r->lamp_count : 1;
     char name[32], path[PATH_MAX];
     status s = OK;
     for (int i = 0; i < count && s == OK; i++) {
@@ -148,7 +200,7 @@ static status make_all(const relight_work *k)
         w->progress(w->progress_context, "relighting", (float)i / (float)count);
         if (w->stop()) return fail(MERLIN_STOPPED, "stopped");
         snprintf(name, sizeof name, count > 1 ? "relit_%03d.png" : "relit.png", i);
-        s = make(k, r->light_count ? r->lights[i] : NULL, &picture);
+        s = make(k, r->lamps + i, each ? 1 : r->lamp_count, &picture);
         if (s == OK) s = merlin_image_write(store_path(w->store, w->form->id, STORE_OUT, name, path), &picture);
         merlin_image_free(&picture);
     }
@@ -166,7 +218,7 @@ static status relight(const work_context *w, const relight_request *r, const mer
         s = merlin_environment_read(store_path(w->store, w->form->id, STORE_IN, room->name, path), r->rotate,
                                     r->room_exposure, &environment);
     k.room = environment;
-    if (s == OK && r->side) s = merlin_relighter_new(w->model, maps, r->side, r->how, &k.relighter);
+    if (s == OK && !r->found) s = merlin_relighter_new(w->model, maps, r->side, r->how, &k.relighter);
     if (s == OK) s = make_all(&k);
     merlin_relighter_free(k.relighter);
     merlin_environment_free(environment);
