@@ -17,7 +17,7 @@ kept() { find tmp/merlin-serve-* -mindepth 1 -maxdepth 1 -type d | wc -l; }
 
 # empties: what was cut off is gone soon.
 empties() {
-    for _ in {1..100}; do
+    for _ in {1..450}; do
         (($(kept) == 0)) && return
         sleep 0.1
     done

@@ -21,21 +21,28 @@ typedef struct request {
 
 enum { LONGEST_IGNORED = 64 << 10 };
 
+/* Refuses a request as soon as its body has been read. */
+static void will_refuse(request *r, unsigned code, const char *fault, const char *words)
+{
+    r->code = code;
+    r->fault = fault;
+    r->words = words;
+}
+
 /* ---- access ---- */
 
-static enum MHD_Result refuse_asker(const request_site *site, struct MHD_Connection *c, guard_answer answer)
+static void refuse_asker(const request_site *site, request *r, guard_answer answer)
 {
-    switch (answer) {
-    case GUARD_NO_HOST:
-        return answer_error(c, MHD_HTTP_FORBIDDEN, "wrong_host",
-                            site->guard.local ? "this server answers to 127.0.0.1 and localhost alone"
-                                              : "this server does not answer to that name: merlin serve --name NAME");
-    case GUARD_OTHER_SITE:
-        return answer_error(c, MHD_HTTP_FORBIDDEN, "other_site", "other sites' pages may not ask this server");
-    default:
-        return answer_error(c, MHD_HTTP_UNAUTHORIZED, "no_token",
-                            "this server wants its token: Authorization: Bearer TOKEN, or /?token=TOKEN in a browser");
-    }
+    if (answer == GUARD_NO_HOST && site->guard.local)
+        will_refuse(r, MHD_HTTP_FORBIDDEN, "wrong_host", "this server answers to 127.0.0.1 and localhost alone");
+    else if (answer == GUARD_NO_HOST)
+        will_refuse(r, MHD_HTTP_FORBIDDEN, "wrong_host",
+                    "this server does not answer to that name: merlin serve --name NAME");
+    else if (answer == GUARD_OTHER_SITE)
+        will_refuse(r, MHD_HTTP_FORBIDDEN, "other_site", "other sites' pages may not ask this server");
+    else if (answer == GUARD_NO_TOKEN)
+        will_refuse(r, MHD_HTTP_UNAUTHORIZED, "no_token",
+                    "this server wants its token: Authorization: Bearer TOKEN, or /?token=TOKEN in a browser");
 }
 
 static guard_answer ask(const request_site *site, struct MHD_Connection *c, bool is_page)
@@ -146,13 +153,6 @@ static const work_kind *kind_of(const char *url)
     return strncmp(url, "/v1/", 4) == 0 ? work_find(url + 4) : NULL;
 }
 
-static void will_refuse(request *r, unsigned code, const char *fault, const char *words)
-{
-    r->code = code;
-    r->fault = fault;
-    r->words = words;
-}
-
 /* Returns the announced length of a body; 0 if there is none. */
 static uint64_t announced(struct MHD_Connection *c)
 {
@@ -216,38 +216,62 @@ static enum MHD_Result end_post(const request_site *site, struct MHD_Connection 
 
 /* ---- the callbacks ---- */
 
-/* Examines a request's head. Returns NULL if it was answered, or its connection must be closed: *result. */
+/* Refuses what can be refused by a request's head. */
+static void check_head(const request_site *site, struct MHD_Connection *c, const char *url, const char *method,
+                       request *r)
+{
+    const bool is_get = strcmp(method, "GET") == 0 || strcmp(method, "HEAD") == 0;
+    const bool is_post = strcmp(method, "POST") == 0;
+    if (r->code) return;
+    if (!is_get && !is_post && strcmp(method, "DELETE") != 0)
+        will_refuse(r, MHD_HTTP_METHOD_NOT_ALLOWED, "no_method", "GET, POST and DELETE alone are answered");
+    else if (is_post && !kind_of(url))
+        will_refuse(r, MHD_HTTP_NOT_FOUND, "not_found", "there is no such thing here: see /v1/openapi.json");
+    else if (announced(c) > (is_post ? site->limits.bytes : LONGEST_IGNORED))
+        will_refuse(r, MHD_HTTP_CONTENT_TOO_LARGE, "too_large", "the request is larger than this server takes");
+}
+
+/* Tells whether a body is to be read although nobody wants it: a client that is still sending when its connection is
+ * closed may not see the answer. */
+static bool is_drained(const request_site *site, struct MHD_Connection *c, const char *method)
+{
+    const uint64_t length = announced(c);
+    return strcmp(method, "POST") == 0 && length > 0 && length <= site->limits.bytes;
+}
+
+/* Starts a request by its head. Returns NULL if it was answered, or its connection is to be closed: *result. */
 static request *begin(const request_site *site, struct MHD_Connection *c, const char *url, const char *method,
                       enum MHD_Result *result)
 {
-    const bool is_get = strcmp(method, "GET") == 0 || strcmp(method, "HEAD") == 0;
-    const bool is_page = is_get && strcmp(url, "/") == 0, is_post = strcmp(method, "POST") == 0;
+    const bool is_page = (strcmp(method, "GET") == 0 || strcmp(method, "HEAD") == 0) && strcmp(url, "/") == 0;
     const guard_answer answer = ask(site, c, is_page);
-    request *r = NULL;
-    if (answer == GUARD_NO_TOKEN && is_page && signs_in(site, c))
+    request *r = calloc(1, sizeof *r);
+    if (!r) return NULL;
+    if (answer == GUARD_NO_TOKEN && is_page && signs_in(site, c)) {
         *result = sign_in(site, c);
-    else if (answer != GUARD_PASSES)
-        *result = refuse_asker(site, c, answer);
-    else if (!is_get && !is_post && strcmp(method, "DELETE") != 0)
-        *result = answer_error(c, MHD_HTTP_METHOD_NOT_ALLOWED, "no_method", "GET, POST and DELETE alone are answered");
-    else if (is_post && !kind_of(url))
-        *result = not_found(c);
-    else if (announced(c) > (is_post ? site->limits.bytes : LONGEST_IGNORED))
-        *result =
-            answer_error(c, MHD_HTTP_CONTENT_TOO_LARGE, "too_large", "the request is larger than this server takes");
-    else
-        r = calloc(1, sizeof *r);
-    if (r && is_post) r->kind = kind_of(url);
-    if (r && is_post) begin_post(site, c, r);
+        free(r);
+        return NULL;
+    }
+    refuse_asker(site, r, answer);
+    check_head(site, c, url, method, r);
+    if (r->code && !is_drained(site, c, method)) {
+        *result = answer_error(c, r->code, r->fault, r->words);
+        free(r);
+        return NULL;
+    }
+    if (!r->code && strcmp(method, "POST") == 0) {
+        r->kind = kind_of(url);
+        begin_post(site, c, r);
+    }
     return r;
 }
 
-/* Takes a piece of the body; returns false to stop reading it. */
-static bool take(request *r, const char *data, size_t size)
+/* Returns false if no more of a body is to be read. */
+static bool take(const request_site *site, request *r, const char *data, size_t size)
 {
     if (r->upload) return upload_take(r->upload, data, size);
     r->ignored += size;
-    return r->ignored <= LONGEST_IGNORED || r->kind;
+    return r->ignored <= (r->code ? site->limits.bytes : LONGEST_IGNORED);
 }
 
 enum MHD_Result requests_answer(void *context, struct MHD_Connection *c, const char *url, const char *method,
@@ -264,7 +288,7 @@ enum MHD_Result requests_answer(void *context, struct MHD_Connection *c, const c
     if (*size) {
         const size_t taken = *size;
         *size = 0;
-        return take(r, data, taken) ? MHD_YES : MHD_NO;
+        return take(site, r, data, taken) ? MHD_YES : MHD_NO;
     }
     if (r->code) return answer_error(c, r->code, r->fault, r->words);
     return r->kind ? end_post(site, c, r) : answer_get(site, c, url, strcmp(method, "DELETE") == 0);
