@@ -29,6 +29,7 @@
  *     relight.h      from maps to new light
  *     stereo.h       from pictures under many lights to a surface
  *     calibrate.h    directions of lights
+ *     surface.h      files and maps of a surface; one from a photograph
  *     mesh.h         maps and surfaces as triangles
  *     view.h         maps as a page
  *     export.h       maps for other programs
@@ -64,6 +65,7 @@
 #include <merlin/rti.h>
 #include <merlin/status.h>
 #include <merlin/stereo.h>
+#include <merlin/surface.h>
 #include <merlin/view.h>
 #include <merlin/warnings.h>
 #include <merlin/weights.h>

@@ -6,13 +6,14 @@
  *     if (merlin_capture_read("owl", NULL, &capture) || merlin_stereo(capture, NULL, &surface))
  *         fprintf(stderr, "%s\n", merlin_error());
  *
- * merlin/mesh.h makes triangles of it. A capture has one camera that does not move, one static object, and one light
- * per picture; lights are distant or near, their directions or positions known or unknown. Images, space, errors and
- * ownership are as in merlin.h. */
+ * merlin/mesh.h makes triangles of it, merlin/surface.h files and maps. A capture has one camera that does not move,
+ * one static object, and one light per picture; lights are distant or near, their directions or positions known or
+ * unknown. Images, space, errors and ownership are as in merlin.h. */
 #ifndef MERLIN_STEREO_H
 #define MERLIN_STEREO_H
 
 #include <merlin/camera.h>
+#include <merlin/files.h>
 #include <merlin/image.h>
 #include <merlin/status.h>
 #include <merlin/warnings.h>
@@ -104,13 +105,34 @@ typedef struct merlin_stereo_params {
     void *progress_context;
 } merlin_stereo_params;
 
+/* Returns the name of a method in the command and in reports, such as "robust"; "unknown" for other values. */
+const char *merlin_stereo_method_name(merlin_stereo_method method);
+
+/* Statistics of the values of pixels; zeros if there are none. */
+typedef struct merlin_statistics {
+    double mean, median;
+    size_t count;
+} merlin_statistics;
+
+/* Figures of a surface from one photograph (merlin_stereo_from_maps in surface.h). */
+typedef struct merlin_relit_photo {
+    int lights;                   /* relit pictures; 0: the surface is of a capture */
+    int subsets, lights_a_subset; /* random subsets of them, each solved separately */
+    char model[64];               /* model that relit the photograph */
+    size_t pixels;                /* the object's pixels */
+    size_t pixels_left;           /* those with the photograph's normals, because the subsets contradict each other */
+    double spread;                /* mean of the residual, degrees */
+    double angle;                 /* mean angle between the solved normals and the photograph's, degrees */
+} merlin_relit_photo;
+
 /* A surface; all images have the pictures' size, and are zero outside the mask. */
 typedef struct merlin_surface {
     merlin_image normal;   /* 3 channels, unit, z > 0 toward the camera */
     merlin_image albedo;   /* the pictures' channels; relative unless the intensities are known */
     merlin_image depth;    /* 1 channel, along -z: in the unit of the distance (1 if that is unknown), in pixels for a
                             * camera far away; each separate piece of the mask has its own distance */
-    merlin_image residual; /* 1 channel, root mean square residual of the fit, relative to it */
+    merlin_image residual; /* 1 channel, root mean square residual of the fit, relative to it; of one photograph the
+                            * root mean square angle of the subsets' normals to their mean, in degrees */
     merlin_image mask;     /* 1 channel, 0 or 1 */
     merlin_camera camera;
     merlin_stereo_method method; /* method that was used */
@@ -127,6 +149,16 @@ typedef struct merlin_surface {
                            * normals may have large errors, or be convex where the object is concave */
     merlin_warnings warnings; /* what contradicts the pictures, their lights and the result (docs/json.md lists the
                                * codes), including these three; empty if params.unchecked */
+    int keep_edges;           /* params.keep_edges */
+    int picture_count;
+    char **picture_names;           /* picture_count file names; "light 0" and so on for pictures from memory */
+    int lights_in_order;            /* 1: the list of lights names no pictures, and was matched by the order of names */
+    merlin_skipped_files skipped;   /* files of the capture's folder that were skipped */
+    merlin_statistics normal_error; /* angles to the true normals, degrees, for layouts that contain these */
+    struct {
+        double read, solve, integrate, total;
+    } seconds;
+    merlin_relit_photo relit;
 } merlin_surface;
 
 /* Computes the surface. params NULL: MERLIN_STEREO_AUTO, least-squares depth. From 3 pictures on

@@ -117,10 +117,22 @@ STEREO_AUTO, STEREO_LS, STEREO_ROBUST, STEREO_NEAR, STEREO_SEMI, STEREO_UNCALIBR
 StereoParams = _struct("stereo_params", [
     ("method", c_int), ("keep_edges", c_int), ("integrate", c_int), ("iterations", c_int), ("unchecked", c_int),
     *_WATCH])
+Statistics = _struct("statistics", [("mean", c_double), ("median", c_double), ("count", c_size_t)])
+RelitPhoto = _struct("relit_photo", [
+    ("lights", c_int), ("subsets", c_int), ("lights_a_subset", c_int), ("model", c_char * 64), ("pixels", c_size_t),
+    ("pixels_left", c_size_t), ("spread", c_double), ("angle", c_double)])
+StereoSeconds = _struct("surface.seconds", [
+    (name, c_double) for name in ("read", "solve", "integrate", "total")])
 SURFACE_NAMES = ("normal", "albedo", "depth", "residual", "mask")
 Surface = _struct("surface", [(name, Image) for name in SURFACE_NAMES] + [
     ("camera", Camera), ("method", c_int), ("lights", POINTER(Light)), ("light_count", c_int), ("lights_near", c_int),
-    ("strengths_unsure", c_int), ("distance_unsure", c_int), ("lights_unsure", c_int), ("warnings", Warnings)])
+    ("strengths_unsure", c_int), ("distance_unsure", c_int), ("lights_unsure", c_int), ("warnings", Warnings),
+    ("keep_edges", c_int), ("picture_count", c_int), ("picture_names", POINTER(c_char_p)), ("lights_in_order", c_int),
+    ("skipped", SkippedFiles), ("normal_error", Statistics), ("seconds", StereoSeconds), ("relit", RelitPhoto)])
+
+# ---- surface.h ----
+
+SPREAD_LIMIT = 20
 
 # ---- calibrate.h ----
 
@@ -272,6 +284,11 @@ FUNCTIONS: Dict[str, Tuple[Any, List[Any]]] = {
     "capture_free": (None, [_handle]),
     "stereo": (c_int, [_handle, _at(StereoParams), _at(Surface)]),
     "surface_free": (None, [_at(Surface)]),
+    "stereo_method_name": (c_char_p, [c_int]),
+    "surface_write": (c_int, [_at(Surface), c_char_p, _at(WriteParams), c_char_p]),
+    "surface_report": (c_int, [_at(Surface), c_char_p, POINTER(c_void_p)]),
+    "maps_from_surface": (c_int, [_at(Surface), _at(Maps)]),
+    "stereo_from_maps": (c_int, [_handle, _at(Maps), _at(StereoParams), _at(Surface)]),
     "mesh_from_maps": (c_int, [_at(Maps), _at(MeshParams), _at(Mesh)]),
     "mesh_from_surface": (c_int, [_at(Surface), _at(Mesh)]),
     "mesh_free": (None, [_at(Mesh)]),

@@ -7,7 +7,9 @@
 #include <string.h>
 
 #include "base/api_needs.h"
+#include "base/progress.h"
 #include "stereo/doubts/capture_doubts.h"
+#include "stereo/integrate/surface_statistics.h"
 #include "stereo/methods/place_lights.h"
 #include "stereo/methods/solve.h"
 
@@ -33,7 +35,9 @@ merlin_status merlin_capture_read(const char *folder, const merlin_capture_files
     if (s != OK) return s;
     merlin_capture *c = calloc(1, sizeof *c);
     if (!c) return fail(MERLIN_NO_MEMORY, "no memory for a capture");
+    const double began = clock_seconds();
     s = pst_capture_read(folder, files, c);
+    c->seconds_read = clock_seconds() - began;
     if (s != OK)
         merlin_capture_free(c);
     else
@@ -162,16 +166,47 @@ static status place_lights(merlin_capture *c, const merlin_stereo_params *params
     return pst_place_lights(c, &shown);
 }
 
+static status copy_names(const merlin_capture *c, merlin_surface *out)
+{
+    out->picture_names = calloc((size_t)c->count, sizeof *out->picture_names);
+    for (int i = 0; out->picture_names && i < c->count; i++) {
+        out->picture_names[i] = strdup(c->name[i]);
+        if (!out->picture_names[i]) break;
+    }
+    bool all = out->picture_names && out->picture_names[c->count - 1];
+    return all ? OK : fail(MERLIN_NO_MEMORY, "no memory for file names");
+}
+
+/* Takes over what reports say of the pictures. */
+static status describe(const merlin_capture *c, const merlin_stereo_params *params, merlin_surface *out)
+{
+    out->picture_count = c->count;
+    status s = copy_names(c, out);
+    out->lights_in_order = c->lights_in_order;
+    out->keep_edges = params->keep_edges != 0;
+    for (size_t i = 0; i < c->skipped.count && s == OK; i++)
+        s = skipped_add(&out->skipped, c->skipped.at[i].name, c->skipped.at[i].why);
+    return s == OK ? surface_normal_error(out, c, &out->normal_error) : s;
+}
+
 /* Solves the capture; c: with a mask. */
 static status solve(merlin_capture *c, const merlin_stereo_params *params, merlin_surface *out)
 {
+    const double began = clock_seconds();
     merlin_light *own = NULL;
     bool heeds_places = params->method == MERLIN_STEREO_AUTO || params->method == MERLIN_STEREO_NEAR;
     status s = c->about_object && heeds_places ? place_lights(c, params, &own) : OK;
     if (s == OK) s = pst_solve(c, params, out);
+    const double solved = clock_seconds();
     if (s == OK) s = pst_surface_integrate(params, out);
     if (s == OK && !params->unchecked) s = pst_doubts(c, out, &out->warnings);
+    if (s == OK) s = describe(c, params, out);
     free(own);
+    const double ended = clock_seconds();
+    out->seconds.read = c->seconds_read;
+    out->seconds.solve = solved - began;
+    out->seconds.integrate = ended - solved;
+    out->seconds.total = c->seconds_read + ended - began;
     return s;
 }
 

@@ -3,23 +3,13 @@
 #include "base/api_needs.h"
 #include "mesh/surface/surface_mesh.h"
 #include "stereo/fit/albedo_scale.h"
-
-static status check_surface(const merlin_surface *s)
-{
-    const merlin_image *maps[] = {&s->normal, &s->depth, &s->mask};
-    const int channels[] = {3, 1, 1};
-    bool sound = s->albedo.data && (s->albedo.channels == 1 || s->albedo.channels == 3);
-    for (int i = 0; i < 3; i++)
-        sound &= maps[i]->data && maps[i]->channels == channels[i] && maps[i]->width == s->albedo.width &&
-                 maps[i]->height == s->albedo.height;
-    return sound ? OK : fail(MERLIN_WRONG_USE, "this surface is empty or incomplete");
-}
+#include "stereo/integrate/stereo_surface.h"
 
 merlin_status merlin_mesh_from_surface(const merlin_surface *surface, merlin_mesh *out)
 {
     if (out) *out = (merlin_mesh){0};
     status s = api_needs(__func__, surface && out);
-    if (s == OK) s = check_surface(surface);
+    if (s == OK) s = pst_surface_check(surface);
     if (s != OK) return s;
     img albedo = {0};
     float scale;

@@ -376,7 +376,7 @@ static double ball_angle(const merlin_capture *capture, const merlin_circle *bal
             count++;
         }
     merlin_surface_free(&found);
-    print_message("gray, %s: %.2f degrees over %.0f pixels\n", pst_method_name(method), sum / count, count);
+    print_message("gray, %s: %.2f degrees over %.0f pixels\n", merlin_stereo_method_name(method), sum / count, count);
     return sum / count;
 }
 

@@ -298,7 +298,7 @@ static void methods_are_named(void **state)
 {
     (void)state;
     for (int m = MERLIN_STEREO_AUTO; m <= MERLIN_STEREO_UNCALIBRATED; m++)
-        assert_int_equal(pst_method_from_name(pst_method_name((merlin_stereo_method)m)), m);
+        assert_int_equal(pst_method_from_name(merlin_stereo_method_name((merlin_stereo_method)m)), m);
     assert_int_equal(pst_method_from_name("magic"), -1);
 }
 

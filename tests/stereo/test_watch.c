@@ -44,7 +44,8 @@ static void a_solver_tells_how_far_it_is_and_finds_the_same(void **state)
         assert_int_equal(pst_solve(&c, &(merlin_stereo_params){.method = methods[i]}, &alone), OK);
         assert_memory_equal(watched.normal.data, alone.normal.data, img_value_count(&alone.normal) * sizeof(float));
         if (methods[i] != MERLIN_STEREO_LS) {
-            print_message("%s: told %d times, to %.2f\n", pst_method_name(methods[i]), h.count, (double)h.last);
+            print_message("%s: told %d times, to %.2f\n", merlin_stereo_method_name(methods[i]), h.count,
+                          (double)h.last);
             assert_true(h.count > 20 && h.last > 0.6f);
         }
         merlin_surface_free(&watched);

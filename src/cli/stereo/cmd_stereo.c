@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* merlin stereo: surfaces from many lights, and from one photograph. */
-#include <cJSON.h>
+#include <cjson/cJSON.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,24 +8,22 @@
 #include "base/file.h"
 #include "base/json/json_put.h"
 #include "base/progress.h"
-#include "base/text/report.h"
 #include "cli/check_replaced.h"
 #include "cli/commands.h"
 #include "cli/page.h"
 #include "cli/stage_bar.h"
 #include "cli/stereo/stereo_commands.h"
-#include "cli/stereo/stereo_folder.h"
-#include "cli/stereo/stereo_photo.h"
+#include "cli/stereo/stereo_output.h"
 #include "cli/written.h"
 #include "command/check_files.h"
 #include "command/cli.h"
 #include "command/json_line.h"
 #include "command/options.h"
+#include "command/photo_ahead.h"
 #include "command/photo_hint.h"
 #include "command/photos.h"
 #include "command/standard_input.h"
-#include "estimate/surface/crop.h"
-#include "stereo/fit/albedo_scale.h"
+#include "merlin/surface.h"
 
 static const char help[] =
     "usage: merlin stereo DIR [options]\n"
@@ -71,7 +69,8 @@ static const char help[] =
 
 typedef struct request {
     const char *input, *output, *weights;
-    stereo_folder folder;
+    merlin_capture_files capture;
+    merlin_stereo_params solve;
     merlin_params params;
     stereo_files files;
     bool maps; /* whether input is a folder of merlin estimate */
@@ -82,12 +81,12 @@ typedef struct request {
 
 static status take_method(const char *name, void *into)
 {
-    merlin_stereo_method *method = into;
-    int m = pst_method_from_name(name);
-    if (m < 0)
-        return fail(MERLIN_WRONG_USE, "--method wants ls, robust, near, semi, uncalibrated or auto, not \"%s\"", name);
-    *method = (merlin_stereo_method)m;
-    return OK;
+    for (int m = MERLIN_STEREO_AUTO; m <= MERLIN_STEREO_UNCALIBRATED; m++)
+        if (strcmp(name, merlin_stereo_method_name((merlin_stereo_method)m)) == 0) {
+            *(merlin_stereo_method *)into = (merlin_stereo_method)m;
+            return OK;
+        }
+    return fail(MERLIN_WRONG_USE, "--method wants ls, robust, near, semi, uncalibrated or auto, not \"%s\"", name);
 }
 
 static status take_distance(const char *text, void *into)
@@ -101,10 +100,10 @@ static status take_distance(const char *text, void *into)
 
 static status take_integration(const char *name, void *into)
 {
-    stereo_folder *f = into;
-    f->params.integrate = 1;
-    f->params.keep_edges = strcmp(name, "edges") == 0;
-    if (!f->params.keep_edges && strcmp(name, "ls") != 0)
+    merlin_stereo_params *params = into;
+    params->integrate = 1;
+    params->keep_edges = strcmp(name, "edges") == 0;
+    if (!params->keep_edges && strcmp(name, "ls") != 0)
         return fail(MERLIN_WRONG_USE, "--integrate wants ls or edges, not \"%s\"", name);
     return OK;
 }
@@ -131,7 +130,7 @@ static bool is_capture(const request *r)
 static status check_maps(const request *r)
 {
     int captured = 0;
-    status s = photo_check_maps(r->input, r->folder.files.mask, &r->params);
+    status s = photo_check_maps(r->input, r->capture.mask, &r->params);
     if (s == OK) s = merlin_maps_look(r->input, &captured);
     if (s != OK || !captured) return s;
     return fail(MERLIN_BAD_INPUT, "%s holds a captured surface, not the maps of one photograph to relight", r->input);
@@ -139,8 +138,8 @@ static status check_maps(const request *r)
 
 static status check(request *r)
 {
-    const merlin_capture_files *o = &r->folder.files;
-    if (r->folder.params.method == MERLIN_STEREO_UNCALIBRATED) r->folder.files.unknown_lights = 1;
+    const merlin_capture_files *o = &r->capture;
+    if (r->solve.method == MERLIN_STEREO_UNCALIBRATED) r->capture.unknown_lights = 1;
     if ((o->lights || o->near_lights) && o->unknown_lights)
         return fail(MERLIN_WRONG_USE,
                     "--method uncalibrated takes no --lights and no --near: it finds both kinds of lights");
@@ -151,12 +150,12 @@ static status check(request *r)
         (o->lights || o->near_lights || o->field_of_view > 0 || o->distance > 0 || o->ambient || o->linear))
         return fail(MERLIN_WRONG_USE,
                     "--lights, --near, --fov, --distance, --ambient and --linear are for a folder of pictures");
-    bool is_distant = r->folder.params.method == MERLIN_STEREO_LS || r->folder.params.method == MERLIN_STEREO_ROBUST ||
-                      r->folder.params.method == MERLIN_STEREO_SEMI;
+    bool is_distant = r->solve.method == MERLIN_STEREO_LS || r->solve.method == MERLIN_STEREO_ROBUST ||
+                      r->solve.method == MERLIN_STEREO_SEMI;
     if (is_one_photo && is_distant)
         return fail(MERLIN_WRONG_USE,
                     "--method %s is for distant lights, and one photograph is relit by near ones: use near",
-                    pst_method_name(r->folder.params.method));
+                    merlin_stereo_method_name(r->solve.method));
     if (r->maps) return check_maps(r);
     if (is_capture(r) && (r->weights || photo_params_given(&r->params)))
         return fail(MERLIN_WRONG_USE,
@@ -167,17 +166,17 @@ static status check(request *r)
 static status parse(int *argc, char ***argv, request *r)
 {
     const cli_option options[] = {
-        {"lights", .text = &r->folder.files.lights},
+        {"lights", .text = &r->capture.lights},
         {"near", .flag = &r->near},
-        {"fov", .real = &r->folder.files.field_of_view, .low = 1, .high = 170},
-        {"distance", .take = take_distance, .into = &r->folder.files.distance},
-        {"method", .take = take_method, .into = &r->folder.params.method},
-        {"mask", .text = &r->folder.files.mask},
+        {"fov", .real = &r->capture.field_of_view, .low = 1, .high = 170},
+        {"distance", .take = take_distance, .into = &r->capture.distance},
+        {"method", .take = take_method, .into = &r->solve.method},
+        {"mask", .text = &r->capture.mask},
         {"point", .take = photo_take_point, .into = &r->params.hint, .many = true},
         {"box", .take = photo_take_box, .into = &r->params.hint},
-        {"ambient", .text = &r->folder.files.ambient},
+        {"ambient", .text = &r->capture.ambient},
         {"linear", .flag = &r->linear},
-        {"integrate", .take = take_integration, .into = &r->folder},
+        {"integrate", .take = take_integration, .into = &r->solve},
         {"mesh", .take = mesh_take_name, .into = &r->files.mesh, .many = true},
         {"html", .flag = &r->files.page},
         {"model", .text = &r->weights},
@@ -196,9 +195,9 @@ static status parse(int *argc, char ***argv, request *r)
     if (*argc > 1) return fail(MERLIN_WRONG_USE, "one folder or photograph at a time, not also %s", (*argv)[1]);
     s = standard_input_take(*argv);
     if (s != OK) return s;
-    r->folder.files.near_lights = r->near;
-    r->folder.files.linear = r->linear;
-    r->input = r->folder.folder = photo_without_maps_name((*argv)[0]);
+    r->capture.near_lights = r->near;
+    r->capture.linear = r->linear;
+    r->input = photo_without_maps_name((*argv)[0]);
     if (standard_input_is(r->input) && !r->output)
         return fail(MERLIN_WRONG_USE, "a photograph from standard input has no name to go by: say where to by -o");
     return check(r);
@@ -206,56 +205,66 @@ static status parse(int *argc, char ***argv, request *r)
 
 /* ---- the work ---- */
 
-static status from_photo(const request *r, const watch *shown, stereo_result *out, cJSON *report)
+static status from_folder(const request *r, merlin_surface *out)
+{
+    merlin_capture *capture;
+    status s = merlin_capture_read(r->input, &r->capture, &capture);
+    if (s == OK) s = merlin_stereo(capture, &r->solve, out);
+    merlin_capture_free(capture);
+    return s;
+}
+
+static status from_photo(const request *r, merlin_surface *out)
 {
     char *weights, *flash;
+    merlin_model *model = NULL;
+    merlin_maps maps = {0};
     status s = photo_find_models(r->weights, &weights, &flash);
     if (s != OK) return s;
-    stereo_photo p = {.photo = r->input,
-                      .mask = r->folder.files.mask,
-                      .weights = weights,
-                      .flash = flash,
-                      .params = r->params,
-                      .method = r->folder.params.method,
-                      .preserve_edges = r->folder.params.keep_edges,
-                      .watch = shown};
-    s = stereo_from_photo(&p, out, report);
+    r->solve.progress(r->solve.progress_context, "relighting", 0);
+    s = photo_open_models(weights, flash, &model);
+    if (s == OK)
+        s = r->maps ? merlin_maps_read(r->input, &maps)
+                    : photo_maps(model, r->input, r->capture.mask, &r->params, &maps);
+    if (s == OK) s = merlin_stereo_from_maps(model, &maps, &r->solve, out);
+    merlin_maps_free(&maps);
+    merlin_model_close(model);
     free(weights);
     free(flash);
     return s;
 }
 
-static status announce(const request *r, const char *output, const stereo_result *result, const cJSON *report,
-                       const staged_files *written, double seconds)
+static status print_json(const request *r, const merlin_surface *surface, const char *output,
+                         const staged_files *written)
+{
+    char *text;
+    status s = merlin_surface_report(surface, standard_input_is(r->input) ? "-" : r->input, &text);
+    if (s != OK) return s;
+    cJSON *report = cJSON_Parse(text);
+    json_line_files(report, output, written);
+    s = json_line_print(report);
+    cJSON_Delete(report);
+    free(text);
+    return s;
+}
+
+static status announce(const request *r, const char *output, const merlin_surface *surface, const staged_files *written,
+                       double seconds)
 {
     char amount[WRITTEN_WORDS];
     status s = OK;
     if (r->json)
-        s = json_line_print(report);
+        s = print_json(r, surface, output, written);
     else if (!r->quiet)
         printf("%s: %s (%.2f s, %s)\n", standard_input_name(r->input), output, seconds, written_words(written, amount));
     enum { TOLD = 3 };
-    if (!r->quiet) warnings_print(&result->doubts, "stereo", standard_input_name(r->input), TOLD);
-    if (!r->quiet) skipped_print(&result->skipped, "stereo", r->input);
+    if (!r->quiet) warnings_print(&surface->warnings, "stereo", standard_input_name(r->input), TOLD);
+    if (!r->quiet) skipped_print(&surface->skipped, "stereo", r->input);
     return s;
 }
 
-static void put_words(cJSON *report, const char *input, const stereo_result *result)
-{
-    warnings all = result->doubts;
-    skipped_warn(&result->skipped, &all);
-    json_put_item(report, "warnings", warnings_json(&all));
-    if (result->skipped.count) skipped_json(&result->skipped, input, json_put_array(report, "skipped"));
-}
-
-static void doubt_page(stereo_result *result)
-{
-    crop_square c;
-    if (crop_around(&result->mask, &c) == OK) page_doubt(c.side, 0, &result->doubts);
-}
-
 /* Plans the progress by the costs of the stages, in seconds for twenty pictures of 2048×2048 on two processors; ratios
- * are about the same for pictures of any number and size. With one photograph the draws are solved. */
+ * are about the same for pictures of any number and size. With one photograph random subsets are solved. */
 static void plan(const request *r, stage_bar *bar)
 {
     static const double solving[] = {[MERLIN_STEREO_LS] = 0.2,
@@ -263,8 +272,8 @@ static void plan(const request *r, stage_bar *bar)
                                      [MERLIN_STEREO_NEAR] = 9,
                                      [MERLIN_STEREO_SEMI] = 4.5,
                                      [MERLIN_STEREO_UNCALIBRATED] = 11.5};
-    bool edges = r->folder.params.keep_edges;
-    merlin_stereo_method method = r->folder.params.method;
+    bool edges = r->solve.keep_edges;
+    merlin_stereo_method method = r->solve.method;
     if (method == MERLIN_STEREO_AUTO) method = r->near ? MERLIN_STEREO_NEAR : MERLIN_STEREO_ROBUST;
     const stage_cost folder[] = {{"reading", 1.4},
                                  {"solving", solving[method]},
@@ -279,44 +288,41 @@ static void plan(const request *r, stage_bar *bar)
     stage_bar_plan(bar, is_capture(r) ? folder : photo, sizeof folder / sizeof *folder);
 }
 
-static status work(request *r, const char *output, cJSON *report)
+static status solve_and_write(request *r, const char *output, merlin_surface *surface, staged_files *written)
 {
-    double began = clock_seconds();
-    stereo_result result = {0};
-    staged_files written = {0};
-    const merlin_capture_files *read = &r->folder.files;
+    const double began = clock_seconds();
     stage_bar bar;
     stage_bar_begin(&bar, r->quiet);
     plan(r, &bar);
     const watch shown = stage_bar_watch(&bar);
-    r->folder.files.progress = r->folder.params.progress = shown.tell;
-    r->folder.files.progress_context = r->folder.params.progress_context = shown.context;
-    r->folder.files.stop = r->folder.params.stop = shown.stop;
-    json_put_text(report, "input", standard_input_is(r->input) ? "-" : r->input);
-    status s = is_capture(r) ? stereo_from_folder(&r->folder, &result, report) : from_photo(r, &shown, &result, report);
-    float scale = 1;
-    if (s == OK) s = pst_scale_albedo(&result.albedo, &result.mask, &scale);
+    r->capture.progress = r->solve.progress = shown.tell;
+    r->capture.progress_context = r->solve.progress_context = shown.context;
+    r->capture.stop = r->solve.stop = shown.stop;
+    status s = is_capture(r) ? from_folder(r, surface) : from_photo(r, surface);
     if (s == OK) {
-        json_put_number(report, "albedo_scale", (double)scale);
-        json_put_text(report, "error_map", result.error_name);
-        json_put_number(report, "error_map_white", (double)result.error_white);
-        json_put_text(report, "integration", r->folder.params.keep_edges ? "edges" : "ls");
-        if (r->files.page) doubt_page(&result);
-        put_words(report, r->input, &result);
-        json_put_number(report, "seconds_total", clock_seconds() - began);
+        surface->seconds.total = clock_seconds() - began;
         stereo_files files = r->files;
         files.folder = output;
-        files.input = standard_input_name(r->input);
-        files.inputs = (const char *const[STAGING_MOST_INPUTS]){r->input, read->mask, read->ambient, read->lights};
+        files.input = r->input;
+        files.inputs =
+            (const char *const[STAGING_MOST_INPUTS]){r->input, r->capture.mask, r->capture.ambient, r->capture.lights};
         files.stop = cli_interrupted;
         watch_tell(&shown, "writing", 0);
-        s = cli_interrupted() ? fail(MERLIN_STOPPED, "stopped") : stereo_write(&files, &result, report, &written);
-        json_line_files(report, output, &written);
+        s = cli_interrupted() ? fail(MERLIN_STOPPED, "stopped") : stereo_write(&files, surface, written);
     }
     stage_bar_end(&bar);
-    if (s == OK) s = announce(r, output, &result, report, &written, clock_seconds() - began);
+    return s;
+}
+
+static status work(request *r, const char *output)
+{
+    const double began = clock_seconds();
+    merlin_surface surface = {0};
+    staged_files written = {0};
+    status s = solve_and_write(r, output, &surface, &written);
+    if (s == OK) s = announce(r, output, &surface, &written, clock_seconds() - began);
     merlin_files_free(&written);
-    stereo_result_free(&result);
+    merlin_surface_free(&surface);
     return s == MERLIN_STOPPED ? fail(s, "interrupted; nothing was written to %s", output) : s;
 }
 
@@ -329,13 +335,11 @@ static status run(request *r)
                     "time; without it they go to stereo inside it",
                     r->output);
     char *output = photo_output_inside(r->input, "stereo", r->output);
-    cJSON *report = report_begin(NULL);
-    status s = output && report ? OK : fail(MERLIN_NO_MEMORY, "no memory for a report");
-    if (s == OK) s = check_photo_and_mask(r->input, r->folder.files.mask);
+    status s = output ? OK : fail(MERLIN_NO_MEMORY, "no memory for a file name");
+    if (s == OK) s = check_photo_and_mask(r->input, r->capture.mask);
     if (s == OK) s = check_replaced(output, r->files.mesh.count == 0);
     if (s == OK) s = check_output(output);
-    if (s == OK) s = work(r, output, report);
-    cJSON_Delete(report);
+    if (s == OK) s = work(r, output);
     free(output);
     return s;
 }

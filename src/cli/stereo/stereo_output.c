@@ -5,210 +5,100 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "base/json/json_put.h"
 #include "base/parallel.h"
 #include "cli/page.h"
-#include "cli/stereo/stereo_view.h"
-#include "estimate/files/map_png.h"
-#include "estimate/files/maps_files.h"
-#include "estimate/surface/crop.h"
-#include "image/write/figure.h"
-#include "image/write/write.h"
-#include "mesh/surface/surface_mesh.h"
+#include "command/standard_input.h"
 
-enum { TILES = 6, COLUMNS = 3, TILE_SIZE = 384 };
-
-static size_t pixel_count(const stereo_result *r)
+static status stopped(const stereo_files *files)
 {
-    return (size_t)r->mask.width * (size_t)r->mask.height;
+    return files->stop && files->stop() ? fail(MERLIN_STOPPED, "stopped") : OK;
 }
 
-/* ---- one file each ---- */
+/* ---- the surface's folder ---- */
 
-static status write_exr(const stereo_result *r, const char *path)
+static const char *input_of(const stereo_files *files)
 {
-    const char *method = r->error_name;
-    const exr_channel channels[] = {
-        {"albedo.R", r->albedo.data, 3, false},     {"albedo.G", r->albedo.data + 1, 3, false},
-        {"albedo.B", r->albedo.data + 2, 3, false}, {"normal.X", r->normal.data, 3, false},
-        {"normal.Y", r->normal.data + 1, 3, false}, {"normal.Z", r->normal.data + 2, 3, false},
-        {"depth.Z", r->depth.data, 1, true},        {"mask.A", r->mask.data, 1, false},
-        {"error.Y", r->error.data, 1, false},
-    };
-    const exr_attribute attributes[] = {exr_text("merlinError", method), exr_number("merlinFocal", r->camera.focal),
-                                        maps_picture_size(r->mask.width, r->mask.height)};
-    return exr_write(path, r->mask.width, r->mask.height, channels, sizeof channels / sizeof channels[0], attributes,
-                     sizeof attributes / sizeof attributes[0]);
+    return standard_input_is(files->input) ? "-" : files->input;
 }
 
-static status write_normal(const stereo_result *r, const char *path)
+/* Replaces the report, of which a warning was not known before. */
+static status rewrite_report(const stereo_files *files, const staging *t, const merlin_surface *surface)
 {
-    return map_write_normals(path, &r->normal, &r->mask);
-}
-
-static status write_albedo(const stereo_result *r, const char *path)
-{
-    return img_write_png(path, &r->albedo, IMG_SRGB8);
-}
-
-static status write_mask(const stereo_result *r, const char *path)
-{
-    return img_write_png(path, &r->mask, IMG_LINEAR8);
-}
-
-static status write_depth(const stereo_result *r, const char *path)
-{
-    return map_write_depths(path, &r->depth, &r->mask);
-}
-
-static status error_picture(const stereo_result *r, img *out)
-{
-    status s = img_copy(out, &r->error);
-    for (size_t i = 0; i < pixel_count(r) && s == OK; i++)
-        out->data[i] /= r->error_white;
-    return s;
-}
-
-static status write_error(const stereo_result *r, const char *path)
-{
-    img shown = {0};
-    status s = error_picture(r, &shown);
-    if (s == OK) s = img_write_png(path, &shown, IMG_LINEAR8);
-    img_free(&shown);
-    return s;
-}
-
-/* Crops a tile to the object, which may be small in large photographs. */
-static status crop_tile(crop_square c, img *tile)
-{
-    img part = {0};
-    status s = crop_take(tile, c, NULL, &part);
-    if (s != OK) return s;
-    img_free(tile);
-    *tile = part;
-    return OK;
-}
-
-static status write_overview(const stereo_result *r, const char *path)
-{
-    img tile[TILES] = {0};
-    crop_square c;
-    status s = crop_around(&r->mask, &c);
-    if (s != OK) c = (crop_square){0, 0, r->mask.width > r->mask.height ? r->mask.width : r->mask.height};
-    s = figure_normals(&r->normal, &r->mask, &tile[0]);
-    if (s == OK) s = crop_tile(c, &tile[0]);
-    if (s == OK) s = crop_take(&r->albedo, c, NULL, &tile[1]);
-    if (s == OK) s = figure_depth(&r->depth, &r->mask, &tile[2]);
-    if (s == OK) s = crop_tile(c, &tile[2]);
-    if (s == OK) s = crop_take(&r->mask, c, NULL, &tile[3]);
-    if (s == OK) s = error_picture(r, &tile[4]);
-    if (s == OK) s = crop_tile(c, &tile[4]);
-    if (s == OK) s = stereo_side_view(r, TILE_SIZE, &tile[5]);
-    const figure_tile tiles[TILES] = {{"normal", &tile[0]}, {"albedo", &tile[1]},      {"depth", &tile[2]},
-                                      {"mask", &tile[3]},   {r->error_name, &tile[4]}, {"from 45 degrees", &tile[5]}};
-    if (s == OK) s = figure_sheet(path, tiles, TILES, COLUMNS, TILE_SIZE);
-    for (int k = 0; k < TILES; k++)
-        img_free(&tile[k]);
-    return s;
-}
-
-static status make_mesh(const stereo_result *r, merlin_mesh *out)
-{
-    const mesh_source source = {
-        .depth = &r->depth, .mask = &r->mask, .normal = &r->normal, .albedo = &r->albedo, .camera = r->camera};
-    return surface_mesh_new(&source, out);
-}
-
-static status write_report(const cJSON *report, const char *path)
-{
-    char *text = json_print(report);
-    if (!text) return fail(MERLIN_NO_MEMORY, "no memory for a report");
-    status s = file_write(path, text, strlen(text));
+    char path[PATH_MAX], *text;
+    status s = merlin_surface_report(surface, input_of(files), &text);
+    if (s == OK) s = file_write(staging_path(t, "report.json", path), text, strlen(text));
     free(text);
     return s;
 }
 
-/* ---- the whole ---- */
-
-typedef struct output {
-    const char *name;
-    status (*write)(const stereo_result *r, const char *path); /* NULL: a mesh */
-} output;
-
-/* Output files, the slowest first, so that two processors finish together; among these the meshes, which are replaced
- * by those requested by name. */
-static const output outputs[] = {
-    {"mesh.obj", NULL},
-    {"mesh.glb", NULL},
-    {"mesh.ply", NULL},
-    {"maps.exr", write_exr},
-    {"overview.png", write_overview},
-    {"normal.png", write_normal},
-    {"albedo.png", write_albedo},
-    {"depth.png", write_depth},
-    {"error.png", write_error},
-    {"mask.png", write_mask},
-};
-enum { MESHES = 3, OUTPUTS = sizeof outputs / sizeof outputs[0] };
-
-typedef struct writing {
-    const stereo_files *files;
-    const staging *staging;
-    const stereo_result *result;
-    const merlin_mesh *mesh;
-    size_t first; /* index of the first output */
-} writing;
-
-static status write_one(void *context, size_t i)
+/* Writes the page of the maps as other commands read them. */
+static status write_page(const stereo_files *files, const staging *t, merlin_surface *surface)
 {
-    const writing *w = context;
     char path[PATH_MAX];
-    if (w->files->stop && w->files->stop()) return fail(MERLIN_STOPPED, "stopped");
-    const output *o = &outputs[w->first + i];
-    staging_path(w->staging, o->name, path);
-    return o->write ? o->write(w->result, path) : merlin_mesh_write(w->mesh, path, NULL);
-}
-
-static status write_all(const stereo_files *files, const staging *t, const stereo_result *r, const merlin_mesh *mesh,
-                        const cJSON *report)
-{
-    writing w = {files, t, r, mesh, files->mesh.count ? MESHES : 0};
-    status s = parallel_try(OUTPUTS - w.first, write_one, &w);
-    char path[PATH_MAX];
-    return s == OK ? write_report(report, staging_path(t, "report.json", path)) : s;
-}
-
-/* Writes the page of the maps as relight reads them. */
-static status write_page(const stereo_files *files, const staging *t)
-{
-    char path[PATH_MAX], *folder = file_folder_of(staging_path(t, "maps.exr", path));
-    merlin_maps maps = {0};
-    status s = folder ? merlin_maps_read(folder, &maps) : fail(MERLIN_NO_MEMORY, "no memory for a file name");
-    const page_source of = {files->input, files->folder, 0};
+    merlin_maps maps;
+    const size_t known = surface->warnings.count;
+    const page_source of = {standard_input_name(files->input), files->folder, 0};
+    status s = merlin_maps_read(staging_folder(t), &maps);
+    if (s == OK) page_doubt(maps.crop.side, 0, &surface->warnings);
+    if (s == OK && surface->warnings.count > known) s = rewrite_report(files, t, surface);
     if (s == OK) s = page_write(&maps, &of, staging_path(t, PAGE_FILE, path));
     merlin_maps_free(&maps);
-    free(folder);
     return s;
 }
 
-status stereo_write(const stereo_files *files, const stereo_result *r, const cJSON *report, staged_files *written)
+static status write_folder(const stereo_files *files, const staging *t, merlin_surface *surface)
 {
-    staging *t[1 + MESH_MOST_FILES] = {NULL};
-    int count = 1;
-    status s = staging_begin(files->folder, files->inputs, &t[0]);
-    if (s != OK) return s;
+    const merlin_write_params params = {.in_place = 1, .stop = files->stop};
+    status s = merlin_surface_write(surface, input_of(files), &params, staging_folder(t));
+    return s == OK && files->page ? write_page(files, t, surface) : s;
+}
+
+/* ---- meshes ---- */
+
+/* The slowest first, so that two processors finish together. */
+static const char *const usual_meshes[] = {"mesh.obj", "mesh.glb", "mesh.ply"};
+enum { USUAL_MESHES = sizeof usual_meshes / sizeof *usual_meshes };
+
+typedef struct meshes {
+    const stereo_files *files;
+    const staging *staging;
+    const merlin_mesh *mesh;
+} meshes;
+
+static status write_usual(void *context, size_t i)
+{
+    const meshes *m = context;
+    char path[PATH_MAX];
+    status s = stopped(m->files);
+    return s == OK ? merlin_mesh_write(m->mesh, staging_path(m->staging, usual_meshes[i], path), NULL) : s;
+}
+
+static status write_meshes(const stereo_files *files, const merlin_surface *surface, maps_staging *all)
+{
     merlin_mesh mesh;
-    s = make_mesh(r, &mesh);
-    if (s == OK) s = write_all(files, t[0], r, &mesh, report);
-    if (s == OK && files->page) s = write_page(files, t[0]);
+    const char *const *names = files->mesh.at;
+    meshes usual = {files, all->at[0], &mesh};
+    status s = merlin_mesh_from_surface(surface, &mesh);
+    if (s == OK && files->mesh.count == 0) s = parallel_try(USUAL_MESHES, write_usual, &usual);
     for (int i = 0; i < files->mesh.count && s == OK; i++) {
-        mesh_file named = {files->mesh.at[i], files->folder, files->inputs, t[0], &mesh};
-        s = mesh_file_stage(&named, &t[count]);
-        count += t[count] != NULL;
+        mesh_file named = {names[i], files->folder, files->inputs, all->at[0], &mesh};
+        s = stopped(files);
+        if (s == OK) s = mesh_file_stage(&named, &all->at[all->count]);
+        all->count += all->at[all->count] != NULL;
     }
     merlin_mesh_free(&mesh);
-    if (s == OK) return staging_commit_all(t, count, written);
-    while (count > 0)
-        s = staging_abort(t[--count], s);
+    return s;
+}
+
+status stereo_write(const stereo_files *files, merlin_surface *surface, staged_files *written)
+{
+    maps_staging all = {.count = 1};
+    status s = staging_begin(files->folder, files->inputs, &all.at[0]);
+    if (s != OK) return s;
+    s = write_folder(files, all.at[0], surface);
+    if (s == OK) s = write_meshes(files, surface, &all);
+    if (s == OK) return staging_commit_all(all.at, all.count, written);
+    while (all.count > 0)
+        s = staging_abort(all.at[--all.count], s);
     return s;
 }

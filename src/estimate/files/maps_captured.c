@@ -102,7 +102,7 @@ static status place_depth(merlin_maps *maps, float focal, float pitch)
 
 /* Moves the surface into the camera of estimates, with its 60 degrees. Its shape is unchanged, and so are its normals,
  * so that lights have the stated directions. */
-static status place(merlin_maps *maps, float focal)
+status maps_place_captured(merlin_maps *maps, float focal)
 {
     img mask = maps->mask;
     crop_square c;
@@ -121,13 +121,18 @@ static status place(merlin_maps *maps, float focal)
     return OK;
 }
 
-status maps_read_captured(exr_file *f, const char *path, merlin_maps *out)
+void maps_begin_captured(merlin_maps *out)
 {
     *out = (merlin_maps){
         .size = FRAME, .gain = WHITE, .mask_source = MERLIN_MASK_GIVEN, .mask_confidence = 1, .captured = 1};
     snprintf(out->model, sizeof out->model, "merlin stereo");
+}
+
+status maps_read_captured(exr_file *f, const char *path, merlin_maps *out)
+{
     float focal = 0;
+    maps_begin_captured(out);
     status s = read_focal(f, path, &focal);
     if (s == OK) s = maps_read_layers(f, path, false, out);
-    return s == OK && (s = place(out, focal)) != OK ? fail_in(s, "%s", path) : s;
+    return s == OK && (s = maps_place_captured(out, focal)) != OK ? fail_in(s, "%s", path) : s;
 }

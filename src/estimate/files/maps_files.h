@@ -17,6 +17,11 @@ status maps_read_layers(exr_file *f, const char *path, bool photographed, merlin
  * the frame of a camera 60 degrees wide. Call merlin_maps_free after a failure, too. */
 status maps_read_photographed(exr_file *f, const char *path, merlin_maps *maps);
 status maps_read_captured(exr_file *f, const char *path, merlin_maps *maps);
+/* Makes such maps of images in memory: the first sets everything but images, the second takes a captured surface's, of
+ * which roughness and photo are zero, to that camera. focal: in pixels; 0: seen from afar, depth in pixels.
+ * MERLIN_BAD_INPUT for an object of hardly any pixels, or with depths behind the camera. */
+void maps_begin_captured(merlin_maps *maps);
+status maps_place_captured(merlin_maps *maps, float focal);
 /* Restores the properties that other functions rely on: half floats are not exactly unit normals, and files may have
  * been edited. */
 void maps_tidy(merlin_maps *maps);

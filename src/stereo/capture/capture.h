@@ -50,6 +50,7 @@ struct merlin_capture {
     img normal_true;       /* 3 channels, or empty: ground truth if the layout has one */
     img depth_true;        /* 1 channel, or empty */
     float field_of_view;   /* field of view for pictures to come, as in merlin_capture_params */
+    double seconds_read;   /* for reading the folder */
 };
 
 /* Reads the pictures of a folder, their lights and the mask. The lights of an .lp file are then relative to the object

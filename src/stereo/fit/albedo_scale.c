@@ -24,7 +24,7 @@ static size_t sample_values(const img *albedo, const img *mask, float *sample)
     return count;
 }
 
-status pst_scale_albedo(img *albedo, const img *mask, float *scale)
+status pst_albedo_scale(const img *albedo, const img *mask, float *scale)
 {
     *scale = 1;
     float *sample = malloc((size_t)albedo->channels * MOST_PIXELS * sizeof *sample);
@@ -34,6 +34,13 @@ status pst_scale_albedo(img *albedo, const img *mask, float *scale)
     float bright = count ? sample[count * 99 / 100] : 0;
     if (bright > 0) *scale = BRIGHT / bright;
     free(sample);
+    return OK;
+}
+
+status pst_scale_albedo(img *albedo, const img *mask, float *scale)
+{
+    status s = pst_albedo_scale(albedo, mask, scale);
+    if (s != OK) return s;
     for (size_t i = 0; i < img_value_count(albedo); i++) {
         float x = albedo->data[i] * *scale;
         albedo->data[i] = isfinite(x) && x > 0 ? (x < 1 ? x : 1) : 0;

@@ -16,9 +16,20 @@ int pst_method_from_name(const char *name)
     return -1;
 }
 
-const char *pst_method_name(merlin_stereo_method m)
+const char *merlin_stereo_method_name(merlin_stereo_method method)
 {
-    return (int)m >= 0 && (int)m < (int)METHOD_COUNT ? method_names[m] : "unknown";
+    return (int)method >= 0 && (int)method < (int)METHOD_COUNT ? method_names[method] : "unknown";
+}
+
+status pst_surface_check(const merlin_surface *s)
+{
+    const merlin_image *maps[] = {&s->normal, &s->depth, &s->mask};
+    const int channels[] = {3, 1, 1};
+    bool sound = s->albedo.data && (s->albedo.channels == 1 || s->albedo.channels == 3);
+    for (int i = 0; i < 3; i++)
+        sound &= maps[i]->data && maps[i]->channels == channels[i] && maps[i]->width == s->albedo.width &&
+                 maps[i]->height == s->albedo.height;
+    return sound ? OK : fail(MERLIN_WRONG_USE, "this surface is empty or incomplete");
 }
 
 status pst_surface_integrate(const merlin_stereo_params *params, merlin_surface *s)
@@ -48,5 +59,9 @@ void merlin_surface_free(merlin_surface *surface)
     img_free(&surface->residual);
     img_free(&surface->mask);
     free(surface->lights);
+    for (int i = 0; surface->picture_names && i < surface->picture_count; i++)
+        free(surface->picture_names[i]);
+    free(surface->picture_names);
+    skipped_free(&surface->skipped);
     *surface = (merlin_surface){0};
 }

@@ -7,7 +7,9 @@
 
 /* Returns the method of this name ("ls", "robust", "near", "semi", "uncalibrated", "auto"); -1 if unknown. */
 int pst_method_from_name(const char *name);
-const char *pst_method_name(merlin_stereo_method m);
+
+/* Returns MERLIN_WRONG_USE unless the surface has all of its images, of one size. */
+status pst_surface_check(const merlin_surface *s);
 
 /* Integrates the normals to depth (integrate.h) unless the method has found depth; with params->integrate even then,
  * close to what it found. */

@@ -37,7 +37,7 @@ static status check_method(const merlin_capture *c, merlin_stereo_method m)
     bool distant = m == MERLIN_STEREO_LS || m == MERLIN_STEREO_ROBUST || m == MERLIN_STEREO_SEMI;
     if (distant && c->lighting != MERLIN_DISTANT_LIGHTS)
         return fail(MERLIN_WRONG_USE, "method %s needs light directions, which this capture does not have; use %s",
-                    pst_method_name(m), c->lighting == MERLIN_NEAR_LIGHTS ? "near" : "--method uncalibrated");
+                    merlin_stereo_method_name(m), c->lighting == MERLIN_NEAR_LIGHTS ? "near" : "--method uncalibrated");
     if (m == MERLIN_STEREO_NEAR && c->lighting != MERLIN_NEAR_LIGHTS)
         return fail(MERLIN_WRONG_USE, "method near needs light positions, which this capture does not have; use %s",
                     c->lighting == MERLIN_DISTANT_LIGHTS
@@ -49,7 +49,8 @@ static status check_method(const merlin_capture *c, merlin_stereo_method m)
         return fail(MERLIN_BAD_INPUT, "photometric stereo needs pictures under 3 or more lights, not %d", c->count);
     if (c->count > PST_MAX_LIGHTS && m != MERLIN_STEREO_LS)
         return fail(MERLIN_BAD_INPUT, "%d pictures are more than the %d that method %s solves%s", c->count,
-                    PST_MAX_LIGHTS, pst_method_name(m), c->lighting == MERLIN_DISTANT_LIGHTS ? "; use ls" : "");
+                    PST_MAX_LIGHTS, merlin_stereo_method_name(m),
+                    c->lighting == MERLIN_DISTANT_LIGHTS ? "; use ls" : "");
     if (m == MERLIN_STEREO_NEAR) return pst_check_positions(c->light, c->count);
     return distant ? check_known_directions(c->light, c->count) : OK;
 }

@@ -39,7 +39,7 @@ static double rendered_angle(const rendered *how, uint64_t index, merlin_stereo_
     double angle = solve_angle(&c, method);
     print_message("object %d, roughness %.2f, cosine power %.0f, %d paths, field of view %.0f: %s %.2f degrees\n",
                   (int)index, (double)how->roughness, (double)how->exponent, how->paths, (double)how->fov,
-                  pst_method_name(method), angle);
+                  merlin_stereo_method_name(method), angle);
     scene_object_free(&object);
     pst_capture_free(&c);
     return angle;

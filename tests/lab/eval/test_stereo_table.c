@@ -13,8 +13,8 @@
 #include "lab/eval/stereo/stereo_frame.h"
 #include "lab/eval/stereo/stereo_object.h"
 #include "lab/eval/stereo/stereo_table.h"
-#include "photo_stereo/draws.h"
 #include "photo_stereo/near_capture.h"
+#include "photo_stereo/subsets.h"
 #include "scratch.h"
 #include "sphere.h"
 #include "stereo/integrate/surface_error.h"
@@ -95,12 +95,12 @@ static void real_pictures_of_a_sample_give_its_normals(void **state)
     sample s = ball_sample(64, 34);
     stereo_object o;
     read_back(&s, &o);
-    assert_int_equal(draw_count(&o.capture), DRAW_MOST);
+    assert_int_equal(subset_count(&o.capture), SUBSETS);
     merlin_surface first, again, other;
     size_t pixels;
-    assert_int_equal(draw_solve(&o.capture, 0, MERLIN_STEREO_AUTO, &first), OK);
-    assert_int_equal(draw_solve(&o.capture, 0, MERLIN_STEREO_AUTO, &again), OK);
-    assert_int_equal(draw_solve(&o.capture, 1, MERLIN_STEREO_AUTO, &other), OK);
+    assert_int_equal(subset_solve(&o.capture, 0, MERLIN_STEREO_AUTO, &first), OK);
+    assert_int_equal(subset_solve(&o.capture, 0, MERLIN_STEREO_AUTO, &again), OK);
+    assert_int_equal(subset_solve(&o.capture, 1, MERLIN_STEREO_AUTO, &other), OK);
     double angle = normal_mean_angle(&first.normal, &o.capture, &pixels);
     print_message("ball under 32 of 34 near lights: %.2f degrees over %zu pixels\n", angle, pixels);
     assert_true(angle < 2 && pixels > 400);
@@ -219,7 +219,7 @@ static void a_table_without_solutions_has_no_numbers_for_them(void **state)
     (void)state;
     stereo_column refused = {.name = "cup", .pixels = 100, .pictures = 32};
     for (int row = STEREO_RELIT; row < STEREO_ROWS; row++)
-        refused.row[row] = (stereo_score){.error = NAN, .failed = DRAW_MOST};
+        refused.row[row] = (stereo_score){.error = NAN, .failed = SUBSETS};
     stereo_table t = {.model = "tiny", .object = &refused, .count = 1};
     char *text;
     size_t size;

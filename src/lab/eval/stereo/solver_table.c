@@ -40,7 +40,7 @@ static status solve(const merlin_capture *c, merlin_stereo_method method, double
                     merlin_surface *out)
 {
     status s = pst_solve(c, &(merlin_stereo_params){.method = method}, out);
-    if (s != OK) return fail_in(s, "%s", pst_method_name(method));
+    if (s != OK) return fail_in(s, "%s", merlin_stereo_method_name(method));
     *angle = normal_mean_angle(&out->normal, c, pixels);
     return OK;
 }

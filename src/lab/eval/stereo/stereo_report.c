@@ -7,7 +7,7 @@
 #include "base/json/json_put.h"
 #include "base/text/report.h"
 #include "lab/eval/stereo/stereo_table.h"
-#include "photo_stereo/draws.h"
+#include "photo_stereo/subsets.h"
 
 enum { LABEL_WIDTH = 20, CELL_WIDTH = 9 };
 
@@ -78,7 +78,7 @@ static void print_comparison(const stereo_table *t, stereo_row row, const char *
 void stereo_table_print(const stereo_table *t, FILE *stream)
 {
     fprintf(stream, "%s, mean angular error in degrees over %zu objects; %d pictures drawn %d times\n\n", t->model,
-            t->count, DRAW_PICTURES, DRAW_MOST);
+            t->count, SUBSET_PICTURES, SUBSETS);
     print_heading(t, stream);
     print_row(t, STEREO_SINGLE, "single image", stream);
     fputs("calibrated\n", stream);
@@ -123,8 +123,8 @@ char *stereo_table_json(const stereo_table *t)
 {
     cJSON *o = report_begin(&(warnings){0});
     json_put_text(o, "model", t->model);
-    json_put_number(o, "draws", DRAW_MOST);
-    json_put_number(o, "pictures_a_draw", DRAW_PICTURES);
+    json_put_number(o, "draws", SUBSETS);
+    json_put_number(o, "pictures_a_draw", SUBSET_PICTURES);
     cJSON *mean = json_put_object(o, "mean");
     for (int row = 0; row < STEREO_ROWS; row++)
         add_number(mean, keys[row], stereo_table_mean(t, (stereo_row)row));

@@ -11,8 +11,8 @@
 #include "lab/eval/stereo/stereo_frame.h"
 #include "lab/eval/stereo/stereo_object.h"
 #include "lab/eval/stereo/stereo_sheet.h"
-#include "photo_stereo/draws.h"
 #include "photo_stereo/relit.h"
+#include "photo_stereo/subsets.h"
 #include "stereo/integrate/surface_error.h"
 
 typedef struct evaluation {
@@ -28,7 +28,7 @@ typedef struct subject {
     stereo_object object;
     relit relit;
     stereo_column *column;
-    img shown[STEREO_ROWS]; /* normals of the last draw; empty for rows without */
+    img shown[STEREO_ROWS]; /* normals of the last subset; empty for rows without */
 } subject;
 
 static void subject_free(subject *s)
@@ -56,11 +56,11 @@ static status estimate(evaluation *e, subject *s)
     return OK;
 }
 
-static status solve_draw(subject *s, stereo_row row, const merlin_capture *from, int draw, double *angle)
+static status solve_subset(subject *s, stereo_row row, const merlin_capture *from, int subset, double *angle)
 {
     merlin_stereo_method method = row >= STEREO_RELIT_UNCALIBRATED ? MERLIN_STEREO_UNCALIBRATED : MERLIN_STEREO_AUTO;
     merlin_surface found;
-    status result = draw_solve(from, draw, method, &found);
+    status result = subset_solve(from, subset, method, &found);
     if (result != OK) return result;
     normal_frame_change(&found.normal, &from->camera, &s->object.capture.camera);
     *angle = normal_mean_angle(&found.normal, &s->object.capture, NULL);
@@ -71,14 +71,14 @@ static status solve_draw(subject *s, stereo_row row, const merlin_capture *from,
     return OK;
 }
 
-/* A draw that a solver can make nothing of is a result too. */
-static status solve_draws(evaluation *e, subject *s, stereo_row row, const merlin_capture *from)
+/* A subset that a solver can make nothing of is a result too. */
+static status solve_subsets(evaluation *e, subject *s, stereo_row row, const merlin_capture *from)
 {
     stereo_score *score = &s->column->row[row];
     double sum = 0, squares = 0, angle = 0, count = 0;
-    for (int d = 0; d < draw_count(from); d++) {
+    for (int d = 0; d < subset_count(from); d++) {
         if (e->options->stopped && e->options->stopped()) return fail(MERLIN_STOPPED, "stopped");
-        status result = solve_draw(s, row, from, d, &angle);
+        status result = solve_subset(s, row, from, d, &angle);
         if (result != OK && result != MERLIN_BAD_INPUT) return fail_in(result, "%s", s->object.name);
         score->failed += result != OK;
         sum += result == OK ? angle : 0;
@@ -101,10 +101,10 @@ static status evaluate_subject(evaluation *e, subject *s, const char *path)
     s->column->pictures = s->object.capture.count;
     result = estimate(e, s);
     const merlin_capture *made = &s->relit.capture, *taken = &s->object.capture;
-    if (result == OK) result = solve_draws(e, s, STEREO_RELIT, made);
-    if (result == OK) result = solve_draws(e, s, STEREO_REAL, taken);
-    if (result == OK) result = solve_draws(e, s, STEREO_RELIT_UNCALIBRATED, made);
-    if (result == OK) result = solve_draws(e, s, STEREO_REAL_UNCALIBRATED, taken);
+    if (result == OK) result = solve_subsets(e, s, STEREO_RELIT, made);
+    if (result == OK) result = solve_subsets(e, s, STEREO_REAL, taken);
+    if (result == OK) result = solve_subsets(e, s, STEREO_RELIT_UNCALIBRATED, made);
+    if (result == OK) result = solve_subsets(e, s, STEREO_REAL_UNCALIBRATED, taken);
     if (result == OK && e->sheet) result = stereo_sheet_add(e->sheet, &s->object, s->shown);
     return result;
 }
@@ -112,12 +112,12 @@ static status evaluate_subject(evaluation *e, subject *s, const char *path)
 static status evaluate_all(evaluation *e, char **path, stereo_table *out)
 {
     status s = OK;
-    progress_begin(&e->bar, "photometric stereo", "solutions", 0, out->count * 4 * DRAW_MOST, e->options->quiet);
+    progress_begin(&e->bar, "photometric stereo", "solutions", 0, out->count * 4 * SUBSETS, e->options->quiet);
     for (size_t i = 0; i < out->count && s == OK; i++) {
         subject one = {.column = &out->object[i]};
         s = evaluate_subject(e, &one, path[i]);
         subject_free(&one);
-        e->solved = (i + 1) * 4 * DRAW_MOST;
+        e->solved = (i + 1) * 4 * SUBSETS;
     }
     progress_end(&e->bar);
     return s;

@@ -21,9 +21,10 @@
 #include "lab/eval/stereo/stereo_row.h"
 
 typedef struct stereo_score {
-    double error;  /* mean angle to the true normals over the object, degrees; the mean of the draws that were solved */
+    double
+        error; /* mean angle to the true normals over the object, degrees; the mean of the subsets that were solved */
     double spread; /* standard deviation of their errors; 0 for a single one */
-    int failed;    /* draws that the solver refused; if all, error is NAN */
+    int failed;    /* subsets that the solver refused; if all, error is NAN */
 } stereo_score;
 
 typedef struct stereo_column {

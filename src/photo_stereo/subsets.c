@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: MIT */
-#include "photo_stereo/draws.h"
+#include "photo_stereo/subsets.h"
 
 #include <stdlib.h>
 
 #include "base/rng.h"
 
-enum { SEED = 1, STREAM_DRAW = 2 };
+enum { SEED = 1, STREAM_SUBSET = 2 };
 
-int draw_count(const merlin_capture *all)
+int subset_count(const merlin_capture *all)
 {
-    return all->count > DRAW_PICTURES ? DRAW_MOST : 1;
+    return all->count > SUBSET_PICTURES ? SUBSETS : 1;
 }
 
 /* Selects the first pictures of a shuffled order, borrowed. */
-static void choose(const merlin_capture *all, int draw, merlin_capture *some)
+static void choose(const merlin_capture *all, int subset, merlin_capture *some)
 {
-    rng r = rng_at(SEED, (uint64_t)draw, STREAM_DRAW);
+    rng r = rng_at(SEED, (uint64_t)subset, STREAM_SUBSET);
     for (int i = 0; i < all->count; i++) {
         some->picture[i] = all->picture[i];
         some->light[i] = all->light[i];
@@ -35,7 +35,7 @@ static void choose(const merlin_capture *all, int draw, merlin_capture *some)
     }
 }
 
-status draw_solve(const merlin_capture *all, int draw, merlin_stereo_method method, merlin_surface *out)
+status subset_solve(const merlin_capture *all, int subset, merlin_stereo_method method, merlin_surface *out)
 {
     *out = (merlin_surface){0};
     merlin_capture some = *all;
@@ -47,8 +47,8 @@ status draw_solve(const merlin_capture *all, int draw, merlin_stereo_method meth
     if (!some.picture || !some.light || !some.name) {
         s = fail(MERLIN_NO_MEMORY, "no memory for %d lights", all->count);
     } else {
-        if (some.count > DRAW_PICTURES) some.count = DRAW_PICTURES;
-        choose(all, draw, &some);
+        if (some.count > SUBSET_PICTURES) some.count = SUBSET_PICTURES;
+        choose(all, subset, &some);
         if (method == MERLIN_STEREO_UNCALIBRATED) pst_capture_forget_lights(&some);
         s = pst_solve(&some, &(merlin_stereo_params){.method = method}, out);
     }

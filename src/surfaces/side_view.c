@@ -1,15 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 /* A view of a depth map from the side, so that a person sees what a front view hides. */
-#include "cli/stereo/stereo_view.h"
+#include "surfaces/side_view.h"
 
 #include <math.h>
 #include <stdlib.h>
+
+#include "base/vec.h"
+#include "optics/pinhole.h"
 
 static const float COSINE = 0.70710678f, GROUND = 0.015f, JUMP = 10, FILL = 0.92f, LEAST_SQUARE = 0.5f;
 enum { MOST_CUTS = 12 };
 
 typedef struct view {
-    const stereo_result *surface;
+    const merlin_surface *surface;
     vec3 low, high; /* bounds of the turned points */
     float scale;
     int stride; /* pixels of the maps from one corner of a square to the next */
@@ -17,18 +20,18 @@ typedef struct view {
     float *nearest; /* z by pixel */
 } view;
 
-static bool on_object(const stereo_result *r, int x, int y)
+static bool on_object(const merlin_surface *r, int x, int y)
 {
     return *img_at(&r->mask, x, y) > 0.5f && isfinite(*img_at(&r->depth, x, y));
 }
 
-static float pixel_size(const stereo_result *r, float depth)
+static float pixel_size(const merlin_surface *r, float depth)
 {
     return pinhole_is_near(&r->camera) ? depth / r->camera.focal : 1;
 }
 
 /* The camera-space point of a pixel, turned so that the object's left side comes to the front. */
-static vec3 turned(const stereo_result *r, int x, int y)
+static vec3 turned(const merlin_surface *r, int x, int y)
 {
     float depth = *img_at(&r->depth, x, y), size = pixel_size(r, depth);
     float cx = pinhole_is_near(&r->camera) ? r->camera.x : (float)r->depth.width / 2;
@@ -39,7 +42,7 @@ static vec3 turned(const stereo_result *r, int x, int y)
 
 static bool joined(const view *v, int x, int y)
 {
-    const stereo_result *r = v->surface;
+    const merlin_surface *r = v->surface;
     float low = INFINITY, high = -INFINITY;
     for (int k = 0; k < 4; k++) {
         int column = x + k % 2 * v->stride, row = y + k / 2 * v->stride;
@@ -53,7 +56,7 @@ static bool joined(const view *v, int x, int y)
 
 static void find_bounds(view *v)
 {
-    const stereo_result *r = v->surface;
+    const merlin_surface *r = v->surface;
     v->low = vec3_make(INFINITY, INFINITY, INFINITY);
     v->high = vec3_scale(v->low, -1);
     float pixel = 0; /* the largest */
@@ -102,7 +105,7 @@ static void draw_square(view *v, int x, int y)
         }
 }
 
-status stereo_side_view(const stereo_result *r, int side, img *out)
+status surface_side_view(const merlin_surface *r, int side, img *out)
 {
     status s = img_new(out, side, side, 1);
     if (s != OK) return s;

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: MIT */
+/* Photometric stereo from random subsets of a capture: the paper's protocol draws 32 of 50 pictures, five times.
+ *
+ *     for (int i = 0; i < subset_count(&capture); i++) {
+ *         merlin_surface found;
+ *         status s = subset_solve(&capture, i, MERLIN_STEREO_AUTO, &found);
+ *         ...
+ *     }
+ */
+#ifndef MERLIN_PHOTO_STEREO_SUBSETS_H
+#define MERLIN_PHOTO_STEREO_SUBSETS_H
+
+#include "stereo/methods/solve.h"
+
+enum { SUBSETS = 5, SUBSET_PICTURES = 32 };
+
+/* Returns SUBSETS, or 1 for a capture of at most SUBSET_PICTURES, which is always used completely. */
+int subset_count(const merlin_capture *all);
+/* Solves subset number `subset`, the same for every capture of as many pictures. MERLIN_STEREO_UNCALIBRATED does not
+ * get the lights. */
+status subset_solve(const merlin_capture *all, int subset, merlin_stereo_method method, merlin_surface *out);
+
+#endif

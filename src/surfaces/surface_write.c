@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: MIT */
+/* merlin_surface_write: a folder with all files of a captured surface, or none. */
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/api_needs.h"
+#include "base/file.h"
+#include "base/parallel.h"
+#include "base/staging.h"
+#include "base/watch.h"
+#include "estimate/files/map_png.h"
+#include "estimate/files/maps_files.h"
+#include "estimate/surface/crop.h"
+#include "image/write/figure.h"
+#include "image/write/write.h"
+#include "stereo/integrate/stereo_surface.h"
+#include "surfaces/error_map.h"
+#include "surfaces/side_view.h"
+#include "surfaces/surface_albedo.h"
+
+enum { TILES = 6, COLUMNS = 3, TILE_SIZE = 384 };
+
+typedef struct job {
+    const merlin_surface *surface;
+    img albedo; /* scaled, 3 channels */
+    const char *input;
+} job;
+
+/* ---- one file each ---- */
+
+static status write_exr(const job *j, const char *path)
+{
+    const exr_channel channels[] = {
+        {"albedo.R", j->albedo.data, 3, false},
+        {"albedo.G", j->albedo.data + 1, 3, false},
+        {"albedo.B", j->albedo.data + 2, 3, false},
+        {"normal.X", j->surface->normal.data, 3, false},
+        {"normal.Y", j->surface->normal.data + 1, 3, false},
+        {"normal.Z", j->surface->normal.data + 2, 3, false},
+        {"depth.Z", j->surface->depth.data, 1, true},
+        {"mask.A", j->surface->mask.data, 1, false},
+        {"error.Y", j->surface->residual.data, 1, false},
+    };
+    const exr_attribute attributes[] = {exr_text("merlinError", error_map_name(j->surface)),
+                                        exr_number("merlinFocal", j->surface->camera.focal),
+                                        maps_picture_size(j->surface->mask.width, j->surface->mask.height)};
+    return exr_write(path, j->surface->mask.width, j->surface->mask.height, channels,
+                     sizeof channels / sizeof channels[0], attributes, sizeof attributes / sizeof attributes[0]);
+}
+
+static status write_normal(const job *j, const char *path)
+{
+    return map_write_normals(path, &j->surface->normal, &j->surface->mask);
+}
+
+static status write_albedo(const job *j, const char *path)
+{
+    return img_write_png(path, &j->albedo, IMG_SRGB8);
+}
+
+static status write_mask(const job *j, const char *path)
+{
+    return img_write_png(path, &j->surface->mask, IMG_LINEAR8);
+}
+
+static status write_depth(const job *j, const char *path)
+{
+    return map_write_depths(path, &j->surface->depth, &j->surface->mask);
+}
+
+static status error_picture(const job *j, img *out)
+{
+    status s = img_copy(out, &j->surface->residual);
+    for (size_t i = 0; i < img_value_count(out) && s == OK; i++)
+        out->data[i] /= error_map_white(j->surface);
+    return s;
+}
+
+static status write_error(const job *j, const char *path)
+{
+    img shown = {0};
+    status s = error_picture(j, &shown);
+    if (s == OK) s = img_write_png(path, &shown, IMG_LINEAR8);
+    img_free(&shown);
+    return s;
+}
+
+/* Crops a tile to the object; large photographs often show little of it. */
+static status crop_tile(crop_square c, img *tile)
+{
+    img part = {0};
+    status s = crop_take(tile, c, NULL, &part);
+    if (s != OK) return s;
+    img_free(tile);
+    *tile = part;
+    return OK;
+}
+
+static status write_overview(const job *j, const char *path)
+{
+    img tile[TILES] = {0};
+    crop_square c;
+    status s = crop_around(&j->surface->mask, &c);
+    if (s != OK)
+        c = (crop_square){
+            0, 0, j->surface->mask.width > j->surface->mask.height ? j->surface->mask.width : j->surface->mask.height};
+    s = figure_normals(&j->surface->normal, &j->surface->mask, &tile[0]);
+    if (s == OK) s = crop_tile(c, &tile[0]);
+    if (s == OK) s = crop_take(&j->albedo, c, NULL, &tile[1]);
+    if (s == OK) s = figure_depth(&j->surface->depth, &j->surface->mask, &tile[2]);
+    if (s == OK) s = crop_tile(c, &tile[2]);
+    if (s == OK) s = crop_take(&j->surface->mask, c, NULL, &tile[3]);
+    if (s == OK) s = error_picture(j, &tile[4]);
+    if (s == OK) s = crop_tile(c, &tile[4]);
+    if (s == OK) s = surface_side_view(j->surface, TILE_SIZE, &tile[5]);
+    const figure_tile tiles[TILES] = {{"normal", &tile[0]},
+                                      {"albedo", &tile[1]},
+                                      {"depth", &tile[2]},
+                                      {"mask", &tile[3]},
+                                      {error_map_name(j->surface), &tile[4]},
+                                      {"from 45 degrees", &tile[5]}};
+    if (s == OK) s = figure_sheet(path, tiles, TILES, COLUMNS, TILE_SIZE);
+    for (int k = 0; k < TILES; k++)
+        img_free(&tile[k]);
+    return s;
+}
+
+static status write_report(const job *j, const char *path)
+{
+    char *text;
+    status s = merlin_surface_report(j->surface, j->input, &text);
+    if (s == OK) s = file_write(path, text, strlen(text));
+    free(text);
+    return s;
+}
+
+/* ---- all of them ---- */
+
+typedef struct output {
+    const char *name;
+    status (*write)(const job *j, const char *path);
+} output;
+
+/* Output files, the slowest first, so that two processors finish together. */
+static const output outputs[] = {
+    {"maps.exr", write_exr},      {"overview.png", write_overview}, {"normal.png", write_normal},
+    {"albedo.png", write_albedo}, {"depth.png", write_depth},       {"error.png", write_error},
+    {"mask.png", write_mask},     {"report.json", write_report},
+};
+enum { OUTPUTS = sizeof outputs / sizeof outputs[0] };
+
+typedef struct batch {
+    job job;
+    pthread_t owner; /* thread that reports progress */
+    atomic_int done;
+    staging *staging; /* NULL: into `folder` itself */
+    const char *folder;
+    watch watch;
+} batch;
+
+static status write_one(void *context, size_t i)
+{
+    batch *b = context;
+    char path[PATH_MAX];
+    if (watch_stops(&b->watch)) return fail(MERLIN_STOPPED, "stopped");
+    if (b->staging)
+        staging_path(b->staging, outputs[i].name, path);
+    else
+        snprintf(path, sizeof path, "%s/%s", b->folder, outputs[i].name);
+    status s = outputs[i].write(&b->job, path);
+    int done = atomic_fetch_add(&b->done, 1) + 1;
+    if (pthread_equal(b->owner, pthread_self())) watch_tell(&b->watch, "writing", (double)done / OUTPUTS);
+    return s;
+}
+
+static status write_all(batch *b, bool in_place)
+{
+    const size_t length = strlen(b->folder);
+    status s = OK;
+    if (!in_place)
+        s = staging_begin(b->folder, NULL, &b->staging);
+    else if (length + 1 + NAME_MAX >= PATH_MAX)
+        s = fail(MERLIN_CANNOT_WRITE, "a path of %zu bytes is too long", length);
+    if (s != OK) return s;
+    s = parallel_try(OUTPUTS, write_one, b);
+    if (s == OK && watch_stops(&b->watch)) s = fail(MERLIN_STOPPED, "stopped");
+    if (in_place) return s;
+    return s == OK ? staging_commit(b->staging, NULL) : staging_abort(b->staging, s);
+}
+
+merlin_status merlin_surface_write(const merlin_surface *surface, const char *input, const merlin_write_params *params,
+                                   const char *folder)
+{
+    static const merlin_write_params usual = {0};
+    const merlin_write_params *by = params ? params : &usual;
+    status s = api_needs(__func__, surface && folder);
+    if (s == OK) s = pst_surface_check(surface);
+    if (s != OK) return s;
+    batch b = {.job = {.surface = surface, .input = input},
+               .owner = pthread_self(),
+               .folder = folder,
+               .watch = {by->progress, by->progress_context, by->stop}};
+    watch_tell(&b.watch, "writing", 0);
+    s = surface_albedo(surface, &b.job.albedo);
+    if (s == OK) s = write_all(&b, by->in_place);
+    img_free(&b.job.albedo);
+    return s;
+}

@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: MIT */
+/* merlin_stereo_from_maps of include/merlin/surface.h, by a model of random weights. */
+#include "../estimate/estimate_fixture.h"
+
+static int always(void)
+{
+    return 1;
+}
+
+static void a_photograph_gives_a_surface_of_its_square(void **state)
+{
+    const fixture *f = *state;
+    merlin_maps maps;
+    merlin_surface s;
+    estimate(f, &maps);
+    if (merlin_stereo_from_maps(f->model, &maps, NULL, &s) != MERLIN_OK) fail_msg("%s", merlin_error());
+    assert_int_equal(s.mask.width, maps.crop.side);
+    assert_int_equal(s.method, MERLIN_STEREO_NEAR);
+    assert_int_equal(s.relit.lights, 50);
+    assert_string_equal(s.relit.model, merlin_model_name(f->model));
+    assert_true(s.relit.pixels > 1000 && s.relit.pixels_left < s.relit.pixels);
+    for (int i = 0; i < s.mask.width * s.mask.height; i++) {
+        const float *n = s.normal.data + 3 * i;
+        if (s.mask.data[i] == 0) continue;
+        assert_float_equal(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1, 1e-4);
+        assert_true(isfinite(s.depth.data[i]) && s.residual.data[i] >= 0);
+    }
+    merlin_surface_free(&s);
+    merlin_maps_free(&maps);
+}
+
+static void what_is_no_photograph_is_refused(void **state)
+{
+    const fixture *f = *state;
+    merlin_maps maps;
+    merlin_surface s;
+    estimate(f, &maps);
+    assert_int_equal(merlin_stereo_from_maps(f->model, &maps, &(merlin_stereo_params){.method = MERLIN_STEREO_LS}, &s),
+                     MERLIN_WRONG_USE);
+    assert_int_equal(merlin_stereo_from_maps(f->model, &maps, &(merlin_stereo_params){.stop = always}, &s),
+                     MERLIN_STOPPED);
+    assert_null(s.normal.data);
+    maps.captured = 1;
+    assert_int_equal(merlin_stereo_from_maps(f->model, &maps, NULL, &s), MERLIN_WRONG_USE);
+    merlin_image picture;
+    const float light[3] = {0, 0, 0};
+    assert_int_equal(merlin_relight(f->model, &maps, light, MERLIN_BY_NETWORK, &picture), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_relight(f->model, &maps, light, MERLIN_BY_BRDF, &picture), MERLIN_OK);
+    merlin_image_free(&picture);
+    merlin_maps_free(&maps);
+    assert_int_equal(merlin_stereo_from_maps(f->model, &maps, NULL, &s), MERLIN_WRONG_USE);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_photograph_gives_a_surface_of_its_square),
+        cmocka_unit_test(what_is_no_photograph_is_refused),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
