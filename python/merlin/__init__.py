@@ -30,6 +30,7 @@ from .pictures import encode_image, read_image, read_mask, resize_image, to_pixe
 from .pictures import write_mask, write_sheet
 from .relighting import Relighter
 from .results import Camera, Circle, Crop, FoundLight, Notice, Shot, SkippedFile
+from .rti import write_rti
 from .weights import Tensor, Weights
 
 __version__: str = _call.library.merlin_version().decode()
@@ -54,5 +55,5 @@ __all__ = [
     "dome", "dome_directions", "encode_image", "estimate", "find_mask", "find_masks", "find_object", "is_mask_name",
     "list_photos", "orbit", "read_image", "read_lamps", "read_mask", "read_shot", "resize_image", "set_threads",
     "stereo", "temperature_color", "to_pixels", "version", "write_animation", "write_image", "write_mask",
-    "write_sheet",
+    "write_rti", "write_sheet",
 ]

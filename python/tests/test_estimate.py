@@ -164,6 +164,21 @@ def test_domes_and_orbits_have_lamps(tmp_path):
             wrong()
 
 
+def test_pictures_of_a_dome_become_an_rti(kept_maps, tmp_path):
+    """A folder or a file."""
+    relighter = kept_maps.relighter(64, by="direct")
+    pictures = [relighter(lamp) for lamp in merlin.dome(12)]
+    written = merlin.write_rti(tmp_path / "cup", pictures, merlin.dome_directions(12), basis="hsh")
+    assert "info.json" in [os.path.basename(path) for path in written]
+    assert merlin.write_rti(tmp_path / "cup.ptm", pictures, merlin.dome_directions(12)) == [str(tmp_path / "cup.ptm")]
+    assert (tmp_path / "cup.ptm").read_bytes().startswith(b"PTM_1.2")
+    for wrong in (([], np.zeros((0, 3))), (pictures, np.eye(3)), (pictures[:2], merlin.dome_directions(2)),
+                  (pictures[:11] + [pictures[0][1:]], merlin.dome_directions(12))):
+        with pytest.raises(merlin.WrongUseError):
+            merlin.write_rti(tmp_path / "wrong", *wrong)
+    assert not (tmp_path / "wrong").exists()
+
+
 def test_the_found_light_can_be_taken(kept_maps):
     """And put back, as "found" does it."""
     lamps, around = kept_maps.found_lights()
