@@ -93,6 +93,15 @@ pictures=()
 for picture in dome/dome_*; do pictures+=(-F pictures=@"$picture"); done
 solid=$(submit stereo "${pictures[@]}" -F lights=@dome/dome.lp -F mask=@dome/mask.webp)
 told "$solid" | grep -q '"state":"done".*"method":"robust"' || complain "stereo: $(told "$solid")"
+for name in maps.exr normal.png albedo.png; do
+    fetches "$solid" $name got
+    cmp -s got surface/$name || complain "$name is another than merlin stereo's"
+done
+fetches "$solid" viewer.html got
+"$MERLIN" relight surface --light 0.7,0.3,-0.4 --no-bounces -o relit -q
+relit=$(submit relight -F job="$solid" -F light=0.7,0.3,-0.4 -F by=direct)
+fetches "$relit" relit.png got
+cmp -s got relit/relit.png || complain "a surface relit is another than merlin relight's"
 fetches "$solid" mesh.glb got
 cmp -s got surface/mesh.glb || complain "the mesh is another than merlin stereo's"
 asks 400 'stereo wants 3 pictures or more, not 2' "$site/v1/stereo" "${pictures[@]:0:4}"

@@ -207,6 +207,18 @@ static status make_all(const relight_work *k)
     return s;
 }
 
+/* Prepares for a captured surface, which has no gloss, and no exposure of a photograph. */
+static status prepare_captured(const relight_work *k)
+{
+    const relight_request *r = k->request;
+    float white = 1;
+    if (r->how == MERLIN_BY_NETWORK) return fail(MERLIN_BAD_INPUT, "a captured surface is not relit by network");
+    status s = merlin_relighter_make_matte(k->relighter);
+    if (s != OK || r->lamp_count == 0) return s;
+    s = merlin_relighter_meter(k->relighter, r->lamps, (size_t)r->lamp_count, NULL, &white);
+    return s == OK ? merlin_relighter_set_white(k->relighter, white) : s;
+}
+
 static status relight(const work_context *w, const relight_request *r, const merlin_maps *maps)
 {
     const form_file *room = form_find_file(w->form, "environment");
@@ -219,6 +231,7 @@ static status relight(const work_context *w, const relight_request *r, const mer
                                     r->room_exposure, &environment);
     k.room = environment;
     if (s == OK && !r->found) s = merlin_relighter_new(w->model, maps, r->side, r->how, &k.relighter);
+    if (s == OK && k.relighter && maps->captured) s = prepare_captured(&k);
     if (s == OK) s = make_all(&k);
     merlin_relighter_free(k.relighter);
     merlin_environment_free(environment);

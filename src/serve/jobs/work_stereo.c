@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "base/json/json_put.h"
 #include "serve/jobs/mesh_files.h"
 #include "serve/jobs/work_kinds.h"
 
@@ -102,30 +101,27 @@ static status read_capture(const work_context *w, const stereo_request *r, merli
     return merlin_capture_read(store_path(w->store, w->form->id, STORE_IN, NULL, folder), &files, out);
 }
 
-static void put_warnings(const work_context *w, const merlin_warnings *warnings)
+/* The page that lights it, of the maps that it is relit by. */
+static status write_view(const work_context *w, const merlin_surface *surface)
 {
-    cJSON *list = json_put_array(w->report, "warnings");
-    for (size_t i = 0; i < warnings->count; i++) {
-        cJSON *one = json_append_object(list);
-        json_put_text(one, "code", warnings->at[i].code);
-        json_put_text(one, "message", warnings->at[i].message);
-    }
-}
-
-static void put_report(const work_context *w, const merlin_surface *surface)
-{
-    static const char *const methods[] = {"auto", "ls", "robust", "near", "semi", "uncalibrated"};
-    put_warnings(w, &surface->warnings);
-    json_put_text(w->report, "method", methods[surface->method]);
-    json_put_number(w->report, "width", surface->normal.width);
-    json_put_number(w->report, "height", surface->normal.height);
+    const merlin_view_params view = {.name = "surface"};
+    merlin_maps maps = {.size = 0};
+    char path[PATH_MAX];
+    status s = merlin_maps_from_surface(surface, &maps);
+    if (s == OK) s = merlin_view_write(&maps, &view, store_path(w->store, w->form->id, STORE_OUT, "viewer.html", path));
+    merlin_maps_free(&maps);
+    return s;
 }
 
 static status write_surface(const work_context *w, const merlin_surface *surface)
 {
+    const merlin_write_params write = {
+        .in_place = 1, .stop = w->stop, .progress = w->progress, .progress_context = w->progress_context};
     merlin_mesh mesh = {.vertex_count = 0};
-    w->progress(w->progress_context, "writing", 0);
-    status s = merlin_mesh_from_surface(surface, &mesh);
+    char folder[PATH_MAX];
+    status s = merlin_surface_write(surface, NULL, &write, store_path(w->store, w->form->id, STORE_OUT, NULL, folder));
+    if (s == OK) s = write_view(w, surface);
+    if (s == OK) s = merlin_mesh_from_surface(surface, &mesh);
     if (s == OK) s = mesh_files_write(w, &mesh);
     merlin_mesh_free(&mesh);
     return s;
@@ -144,12 +140,11 @@ static status run(const work_context *w, const void *request)
     if (s == OK) s = merlin_stereo(capture, &params, &surface);
     merlin_capture_free(capture);
     if (s != OK) return s;
-    put_report(w, &surface);
     s = write_surface(w, &surface);
     merlin_surface_free(&surface);
     return s;
 }
 
 static const work_stage stages[] = {
-    {"reading", 0.2f}, {"solving", 0.6f}, {"integrating", 0.1f}, {"writing", 0.1f}, {0}};
+    {"reading", 0.2f}, {"solving", 0.5f}, {"integrating", 0.1f}, {"writing", 0.2f}, {0}};
 const work_kind work_stereo = {.name = "stereo", .stages = stages, .check = check, .run = run};
