@@ -31,10 +31,11 @@ function(merlin_loads name macro library)
   target_include_directories(merlin_${name} SYSTEM PRIVATE ${ARGN})
 endfunction()
 
-# merlin_program(NAME FOLDER [PARTS folders...] LINK targets...): src/FOLDER/**.c becomes the program NAME.
+# merlin_program(NAME FOLDER [PARTS folders...] LINK targets... [WITH targets...]): src/FOLDER/**.c becomes the program
+# NAME. WITH has what is linked, too, for the functions of include/merlin: tools/check-includes keeps its headers out.
 function(merlin_program name folder)
-  cmake_parse_arguments(ARG "" "" "PARTS;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "PARTS;LINK;WITH" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${folder}/*.c)
   add_executable(${name} ${sources})
-  target_link_libraries(${name} PRIVATE ${ARG_LINK})
+  target_link_libraries(${name} PRIVATE ${ARG_LINK} ${ARG_WITH})
 endfunction()
