@@ -15,6 +15,7 @@
 #include "command/json_line.h"
 #include "command/photo_folder.h"
 #include "command/photo_hint.h"
+#include "command/standard_input.h"
 #include "merlin/estimate.h"
 
 /* ---- names ---- */
@@ -53,6 +54,15 @@ const char *photo_without_maps_name(char *input)
     if (!slash) return ".";
     slash[slash == input] = 0;
     return input;
+}
+
+status photo_take_input(char **argument, const char *output, const char **input)
+{
+    status s = standard_input_take(argument);
+    if (s != OK) return s;
+    *input = photo_without_maps_name(*argument);
+    if (output || !standard_input_is(*input)) return OK;
+    return fail(MERLIN_WRONG_USE, "a photograph from standard input has no name to go by: say where to by -o");
 }
 
 /* ---- the list ---- */

@@ -38,6 +38,9 @@ char *photo_output_inside(const char *input, const char *name, const char *asked
 /* Returns input, or for DIR/maps.exr, which is cut, DIR: shells complete the name of the file in a folder of maps, and
  * the folder is meant. */
 const char *photo_without_maps_name(char *input);
+/* Takes a command's one photograph or folder from its arguments: "-" is standard input, which has no name and so wants
+ * an `output`, and DIR/maps.exr is DIR. *input lives as long as the argument. */
+status photo_take_input(char **argument, const char *output, const char **input);
 
 /* Finds `asked`, else $MERLIN_MODEL, else merlin-point: a file, or the name of weights that merlin ships. Those are in
  * models next to the program or above it (a build folder in the source tree), else in share/merlin/models; *path is

@@ -193,14 +193,10 @@ static status parse(int *argc, char ***argv, request *r)
     if (s != OK || r->help) return s;
     if (*argc == 0) return fail(MERLIN_WRONG_USE, "no folder of pictures and no photograph given");
     if (*argc > 1) return fail(MERLIN_WRONG_USE, "one folder or photograph at a time, not also %s", (*argv)[1]);
-    s = standard_input_take(*argv);
-    if (s != OK) return s;
     r->capture.near_lights = r->near;
     r->capture.linear = r->linear;
-    r->input = photo_without_maps_name((*argv)[0]);
-    if (standard_input_is(r->input) && !r->output)
-        return fail(MERLIN_WRONG_USE, "a photograph from standard input has no name to go by: say where to by -o");
-    return check(r);
+    s = photo_take_input(*argv, r->output, &r->input);
+    return s == OK ? check(r) : s;
 }
 
 /* ---- the work ---- */
