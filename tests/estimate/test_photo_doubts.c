@@ -122,7 +122,7 @@ static void every_doubt_has_a_code_and_words(void **state)
     merlin_maps maps;
     make(&maps, 20, 10, 100, 80);
     for (unsigned bit = 1; bit <= MERLIN_DOUBT_GREY; bit <<= 1) {
-        char words[WARNING_WORDS];
+        char words[MERLIN_WARNING_WORDS];
         assert_true(strlen(merlin_doubt_code((merlin_doubt)bit)) > 3);
         int length = merlin_doubt_message(&maps, (merlin_doubt)bit, words, sizeof words);
         assert_true(length > 20 && length < (int)sizeof words);

@@ -42,12 +42,6 @@ static bool is_object(const merlin_maps *maps, size_t i)
  * strengths, which may be any, so that it is scaled to this range if it is outside. */
 static const float BRIGHT_PART = 0.999f, LEAST_BRIGHT = 0.2f, MOST_BRIGHT = 1;
 
-static int compare_floats(const void *a, const void *b)
-{
-    float x = *(const float *)a, y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
 static status normalize_albedo(merlin_maps *maps)
 {
     size_t pixels = (size_t)maps->mask.width * (size_t)maps->mask.height, count = 0;
@@ -57,7 +51,7 @@ static status normalize_albedo(merlin_maps *maps)
         float most = fmaxf(fmaxf(albedo[3 * i], albedo[3 * i + 1]), albedo[3 * i + 2]);
         if (is_object(maps, i) && most > 0) brightest[count++] = most;
     }
-    qsort(brightest, count, sizeof *brightest, compare_floats);
+    qsort(brightest, count, sizeof *brightest, number_ascending);
     float bright = count ? brightest[(size_t)(BRIGHT_PART * (float)(count - 1))] : MOST_BRIGHT;
     free(brightest);
     float scale = clamp(bright, LEAST_BRIGHT, MOST_BRIGHT) / bright;

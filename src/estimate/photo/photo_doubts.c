@@ -7,6 +7,7 @@
 
 #include "base/api_needs.h"
 #include "base/status.h"
+#include "base/warnings.h"
 #include "estimate/light/found_light.h"
 #include "estimate/object/mask.h"
 #include "estimate/surface/exposure.h"
@@ -310,20 +311,15 @@ int merlin_doubt_message(const merlin_maps *maps, merlin_doubt doubt, char *text
     }
 }
 
-void doubts_list(const merlin_maps *maps, warnings *list)
-{
-    for (int i = 0; i < NAMES; i++) {
-        char message[WARNING_WORDS];
-        if (!(maps->doubts & names[i].doubt)) continue;
-        merlin_doubt_message(maps, names[i].doubt, message, sizeof message);
-        warnings_add(list, names[i].code, "%s", message);
-    }
-}
-
 void merlin_maps_warnings(const merlin_maps *maps, merlin_warnings *out)
 {
     if (out) *out = (merlin_warnings){0};
-    if (maps && out) doubts_list(maps, out);
+    for (int i = 0; i < NAMES && maps && out; i++) {
+        char message[WARNING_WORDS];
+        if (!(maps->doubts & names[i].doubt)) continue;
+        merlin_doubt_message(maps, names[i].doubt, message, sizeof message);
+        warnings_add(out, names[i].code, "%s", message);
+    }
 }
 
 merlin_status merlin_shot_read(const char *path, merlin_shot *out)

@@ -3,13 +3,10 @@
 #ifndef MERLIN_ESTIMATE_PHOTO_PHOTO_DOUBTS_H
 #define MERLIN_ESTIMATE_PHOTO_PHOTO_DOUBTS_H
 
-#include "base/warnings.h"
 #include "estimate/photo/light_cues.h"
 #include "merlin/merlin.h"
 
 /* Finds the doubts of complete maps, given what is known about the exposure. */
 void doubts_find(const light_cues *cues, const merlin_shot *shot, merlin_maps *maps);
-/* Adds them to a list, the most severe first. */
-void doubts_list(const merlin_maps *maps, warnings *list);
 
 #endif
