@@ -203,7 +203,7 @@ static bool allocate(const mesh_source *from, merlin_mesh *m)
     m->positions = calloc(3 * n, sizeof *m->positions);
     m->normals = calloc(3 * n, sizeof *m->normals);
     m->uvs = malloc(2 * n * sizeof *m->uvs);
-    m->pixels = malloc(n * sizeof *m->pixels);
+    m->pixels = calloc(n, sizeof *m->pixels);
     /* a vertex is a corner of at most four squares, and each has at most a triangle per two corners */
     m->triangles = calloc(6 * n, sizeof *m->triangles);
     if (from->normal) m->face_normals = malloc(3 * n * sizeof *m->face_normals);
@@ -223,7 +223,7 @@ status surface_mesh_new(const mesh_source *from, merlin_mesh *out)
     if (!pinhole_is_near(&from->camera)) out->scale = 1.0 / (width > height ? width : height);
     for (size_t p = 0; p < pixels; p++)
         out->vertex_count += inside(from, p);
-    if (out->vertex_count == 0) {
+    if (pixels == 0 || out->vertex_count == 0) {
         *out = (merlin_mesh){0};
         return fail(MERLIN_BAD_INPUT, "the mask is empty: there is no mesh to write");
     }
