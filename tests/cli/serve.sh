@@ -104,6 +104,12 @@ fetches "$relit" relit.png got
 cmp -s got relit/relit.png || complain "a surface relit is another than merlin relight's"
 fetches "$solid" mesh.glb got
 cmp -s got surface/mesh.glb || complain "the mesh is another than merlin stereo's"
+"$MERLIN" stereo "$demo" -o relit_surface -q || complain "no surface of a photograph"
+single=$(submit stereo -F photo=@"$demo")
+told "$single" | grep -q '"state":"done"' || complain "stereo of a photograph: $(told "$single" | head -c 500)"
+fetches "$single" normal.png got
+cmp -s got relit_surface/normal.png || complain "stereo of a photograph is another than merlin stereo's"
+asks 400 'stereo of a photo knows no field' "$site/v1/stereo" -F photo=@"$demo" -F lights=@dome/dome.lp
 asks 400 'stereo wants 3 pictures or more, not 2' "$site/v1/stereo" "${pictures[@]:0:4}"
 asks 400 'filenames.txt, sent as pictures, has no name of a picture' "$site/v1/stereo" "${pictures[@]}" -F "pictures=@dome/dome.lp;filename=filenames.txt"
 cp "$demo" secret.png

@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "serve/jobs/mesh_files.h"
+#include "serve/jobs/photo_form.h"
 #include "serve/jobs/work_kinds.h"
 
 /* Accepted endings. Names are checked when files are read: a list of another data set's layout, uploaded as a picture,
@@ -14,6 +15,8 @@ static const char *const picture_endings[] = {".png",  ".jpg", ".jpeg", ".tif", 
                                               ".cr3",  ".nef", ".arw",  ".dng", ".raf",  ".rw2",  ".orf",  NULL};
 
 typedef struct stereo_request {
+    bool photo; /* of one photograph, which is relit */
+    merlin_params photo_params;
     merlin_stereo_params params;
     int near_lights, unknown_lights, linear;
     float field_of_view, distance;
@@ -53,25 +56,29 @@ static status read_values(const form *f, stereo_request *r)
     return s;
 }
 
+/* The fields of pictures under many lights, and those of one photograph. */
+static const form_key of_pictures[] = {{"pictures", FORM_FILE, SIZE_MAX},
+                                       {"lights", FORM_FILE, 1},
+                                       {"mask", FORM_FILE, 1},
+                                       {"ambient", FORM_FILE, 1},
+                                       {"method", FORM_VALUE, 1},
+                                       {"keep_edges", FORM_VALUE, 1},
+                                       {"near", FORM_VALUE, 1},
+                                       {"unknown", FORM_VALUE, 1},
+                                       {"linear", FORM_VALUE, 1},
+                                       {"fov", FORM_VALUE, 1},
+                                       {"distance", FORM_VALUE, 1},
+                                       {0}};
+static const form_key of_photo[] = {PHOTO_KEYS, {"method", FORM_VALUE, 1}, {"keep_edges", FORM_VALUE, 1}, {0}};
+
 static status check(const form *f, const work_limits *limits, void **request)
 {
-    const form_key known[] = {{"pictures", FORM_FILE, SIZE_MAX},
-                              {"lights", FORM_FILE, 1},
-                              {"mask", FORM_FILE, 1},
-                              {"ambient", FORM_FILE, 1},
-                              {"method", FORM_VALUE, 1},
-                              {"keep_edges", FORM_VALUE, 1},
-                              {"near", FORM_VALUE, 1},
-                              {"unknown", FORM_VALUE, 1},
-                              {"linear", FORM_VALUE, 1},
-                              {"fov", FORM_VALUE, 1},
-                              {"distance", FORM_VALUE, 1},
-                              {0}};
     stereo_request *r = calloc(1, sizeof *r);
     *request = r;
     if (!r) return fail(MERLIN_NO_MEMORY, "no memory for a request");
-    status s = form_check(f, "stereo", known);
-    if (s == OK) s = check_pictures(f, limits);
+    r->photo = form_find_file(f, "photo") != NULL;
+    status s = form_check(f, r->photo ? "stereo of a photo" : "stereo", r->photo ? of_photo : of_pictures);
+    if (s == OK) s = r->photo ? photo_form_params(f, &r->photo_params) : check_pictures(f, limits);
     return s == OK ? read_values(f, r) : s;
 }
 
@@ -127,18 +134,36 @@ static status write_surface(const work_context *w, const merlin_surface *surface
     return s;
 }
 
+static status solve_pictures(const work_context *w, const stereo_request *r, const merlin_stereo_params *params,
+                             merlin_surface *out)
+{
+    merlin_capture *capture = NULL;
+    status s = read_capture(w, r, &capture);
+    if (s == OK) s = merlin_stereo(capture, params, out);
+    merlin_capture_free(capture);
+    return s;
+}
+
+static status solve_photo(const work_context *w, const stereo_request *r, const merlin_stereo_params *params,
+                          merlin_surface *out)
+{
+    merlin_maps maps;
+    status s = photo_form_estimate(w, &r->photo_params, &maps);
+    if (s != OK) return s;
+    s = merlin_stereo_from_maps(w->model, &maps, params, out);
+    merlin_maps_free(&maps);
+    return s;
+}
+
 static status run(const work_context *w, const void *request)
 {
     const stereo_request *r = request;
-    merlin_capture *capture = NULL;
     merlin_surface surface = {.light_count = 0};
     merlin_stereo_params params = r->params;
     params.stop = w->stop;
     params.progress = w->progress;
     params.progress_context = w->progress_context;
-    status s = read_capture(w, r, &capture);
-    if (s == OK) s = merlin_stereo(capture, &params, &surface);
-    merlin_capture_free(capture);
+    status s = (r->photo ? solve_photo : solve_pictures)(w, r, &params, &surface);
     if (s != OK) return s;
     s = write_surface(w, &surface);
     merlin_surface_free(&surface);
@@ -146,5 +171,6 @@ static status run(const work_context *w, const void *request)
 }
 
 static const work_stage stages[] = {
-    {"reading", 0.2f}, {"solving", 0.5f}, {"integrating", 0.1f}, {"writing", 0.2f}, {0}};
+    {"reading", 0.1f}, {"finding the object", 0.05f}, {"estimating", 0.05f}, {"refining", 0.05f},
+    {"solving", 0.5f}, {"integrating", 0.1f},         {"writing", 0.15f},    {0}};
 const work_kind work_stereo = {.name = "stereo", .stages = stages, .check = check, .run = run};
