@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import ctypes
+import json
 import os
-from typing import Any, List, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import TYPE_CHECKING, Any, Dict, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from . import _headers as h
 from . import mesh, pictures
 from ._call import Owner, ProgressCallback, StopCallback, Watch, check, choice, is_path, optional_path, path_bytes
-from ._call import real, vector3, view, whole
+from ._call import real, taken_text, vector3, view, whole
 from .errors import WrongUseError
 from .mesh import Mesh
 from .pictures import PathLike, Picture
-from .results import Camera, Notice, notices, warn
+from .results import Camera, Notice, SkippedFile, notices, skipped, warn
+
+if TYPE_CHECKING:
+    from .maps import Maps
+    from .model import Model
 
 METHODS = {"auto": h.STEREO_AUTO, "ls": h.STEREO_LS, "robust": h.STEREO_ROBUST, "near": h.STEREO_NEAR,
            "semi": h.STEREO_SEMI, "uncalibrated": h.STEREO_UNCALIBRATED}
@@ -113,6 +118,51 @@ class Capture:
         return surface
 
 
+class Statistics(NamedTuple):
+    """Of the values of pixels."""
+
+    mean: float
+    median: float
+    pixels: int
+
+
+class RelitPhoto(NamedTuple):
+    """How a surface was made of one photograph."""
+
+    lights: int  #: relit pictures
+    subsets: int  #: random ones of them, which were solved by themselves
+    lights_a_subset: int
+    model: str
+    pixels: int  #: the object's
+    pixels_left: int  #: those with the photograph's normals, as the subsets contradict each other
+    spread: float  #: mean of the residual, degrees
+    angle: float  #: mean angle between the solved normals and the photograph's, degrees
+
+
+def _relit(struct: Any) -> Optional[RelitPhoto]:
+    if not struct.lights:
+        return None
+    return RelitPhoto(struct.lights, struct.subsets, struct.lights_a_subset, struct.model.decode("utf-8", "replace"),
+                      struct.pixels, struct.pixels_left, struct.spread, struct.angle)
+
+
+def _text(words: Optional[str]) -> Optional[bytes]:
+    return None if words is None else words.encode()
+
+
+def of_maps(model: "Model", maps: "Maps", method: str, keep_edges: bool, progress: Optional[ProgressCallback],
+            stop: Optional[StopCallback]) -> "Surface":
+    """As Maps.stereo."""
+    params = h.StereoParams(choice(method, METHODS, "method"), int(keep_edges))
+    watch = Watch(progress, stop)
+    watch.put(params)
+    owner = Owner(h.Surface(), "surface_free")
+    watch.check("stereo_from_maps", model._handle.struct, maps._sound(), ctypes.byref(params), owner.at)
+    surface = Surface(owner)
+    warn(surface.warnings)
+    return surface
+
+
 class Surface:
     """What photometric stereo found: arrays of float32 of the pictures' height and width, zero where the mask is. They
     show the library's memory: nothing is copied, and an array keeps its surface alive."""
@@ -138,8 +188,43 @@ class Surface:
         self.lights: Optional[List[Light]] = (
             [light_of(struct.lights[i]) for i in range(struct.light_count)] if struct.lights else None)
 
+        self.keep_edges: bool = bool(struct.keep_edges)
+        self.picture_names: List[str] = [os.fsdecode(struct.picture_names[i]) for i in range(struct.picture_count)]
+        self.lights_in_order: bool = bool(struct.lights_in_order)  #: the list of lights names no pictures
+        self.skipped: List[SkippedFile] = skipped(struct.skipped)  #: files of the capture's folder that were left aside
+        #: angles to the true normals, degrees, where these lie beside the pictures; else None
+        self.normal_error: Optional[Statistics] = (
+            Statistics(struct.normal_error.mean, struct.normal_error.median, struct.normal_error.count)
+            if struct.normal_error.count else None)
+        self.seconds: Dict[str, float] = {name: getattr(struct.seconds, name)
+                                          for name in ("read", "solve", "integrate", "total")}
+        #: of a surface from one photograph; else None
+        self.relit: Optional[RelitPhoto] = _relit(struct.relit)
+
     def __repr__(self) -> str:
         return f"<merlin.Surface {self.mask.shape[0]} x {self.mask.shape[1]} by {self.method}>"
+
+    def save(self, folder: PathLike, *, name: Optional[str] = None, progress: Optional[ProgressCallback] = None,
+             stop: Optional[StopCallback] = None) -> None:
+        """Writes maps.exr, the PNGs, overview.png and report.json into a folder, which is made if need be: all of them
+        or, after a failure, none. name: of what it was made from, for the report. Maps.load reads it."""
+        params, watch = h.WriteParams(), Watch(progress, stop)
+        watch.put(params)
+        watch.check("surface_write", self._owner.at, _text(name), ctypes.byref(params), path_bytes(folder))
+
+    def report(self, name: Optional[str] = None) -> Dict[str, Any]:
+        """What report.json has (docs/json.md)."""
+        text = ctypes.c_void_p()
+        check("surface_report", self._owner.at, _text(name), ctypes.byref(text))
+        return json.loads(taken_text(text))
+
+    def maps(self, model: "Optional[Model]" = None) -> "Maps":
+        """Maps of the surface, to be relit and viewed: matte, moved in front of a photograph's camera. model: to relight
+        them by; None: the default one, opened when it is first needed."""
+        from .maps import Maps
+        owner = Owner(h.Maps(), "maps_free")
+        check("maps_from_surface", self._owner.at, owner.at)
+        return Maps(owner, model)
 
     def mesh(self) -> Mesh:
         """The front as triangles, a vertex for each pixel of the mask; albedo is scaled so that its brightest are 0.9.

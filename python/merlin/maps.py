@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any, Dict, Iterable, List, NamedTuple, Optiona
 import numpy as np
 
 from . import _headers as h
-from . import exporting, mesh
-from ._call import Owner, ProgressCallback, StopCallback, Watch, call, check, free, optional_path, path_bytes
-from ._call import vector3, view, whole
+from . import capture, exporting, mesh
+from ._call import Owner, ProgressCallback, StopCallback, Watch, call, check, optional_path, path_bytes
+from ._call import taken_text, vector3, view, whole
+from .capture import Surface
 from .errors import WrongUseError
 from .mesh import Mesh
 from .pictures import PathLike
@@ -178,10 +179,7 @@ class Maps:
         """What report.json has (docs/json.md): what was done, the doubts, the maps' statistics."""
         text = ctypes.c_void_p()
         check("maps_report", self._sound(), ctypes.byref(text))
-        try:
-            return json.loads(ctypes.string_at(text))
-        finally:
-            free(text)
+        return json.loads(taken_text(text))
 
     def __repr__(self) -> str:
         return f"<merlin.Maps {self.height} x {self.width} by {self.model_name}>"
@@ -223,6 +221,13 @@ class Maps:
         the pictures, which show the square `crop`; 0: as many as it has; at most 8000."""
         from .relighting import Relighter
         return Relighter(self, side, by=by, model=model)
+
+    def stereo(self, method: str = "auto", *, keep_edges: bool = False, model: "Optional[Model]" = None,
+               progress: Optional[ProgressCallback] = None, stop: Optional[StopCallback] = None) -> Surface:
+        """The surface by photometric stereo of the photograph, relit under 50 lamps: the square around the object, of at
+        most 512 pixels a side. method: "auto", "near" or "uncalibrated". keep_edges, progress, stop: as of
+        Capture.stereo."""
+        return capture.of_maps(self._lighting_model(model), self, method, keep_edges, progress, stop)
 
     def found_lights(self, turn: float = 0.0) -> "Tuple[List[Lamp], Optional[Environment]]":
         """The light that was found in the photograph, turned about the vertical by so many degrees: its lamps and, unless

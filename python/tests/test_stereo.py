@@ -86,6 +86,34 @@ def test_a_surface_is_a_mesh_file(sphere, tmp_path):
         mesh.save(tmp_path / "ball.xyz")
 
 
+def test_a_surface_is_saved_and_becomes_maps(sphere, model, tmp_path):
+    """To be relit."""
+    lights, pictures, _normal, inside = sphere
+    surface = merlin.stereo(list(pictures), lights, mask=inside)
+    surface.save(tmp_path / "ball", name="a ball")
+    assert (tmp_path / "ball" / "report.json").exists() and surface.report("a ball")["method"] == "robust"
+    assert len(surface.picture_names) == len(lights) and surface.normal_error is None and surface.relit is None
+    assert surface.seconds["solve"] > 0 and surface.skipped == []
+    maps = surface.maps(model)
+    lit = maps.relight((-0.7, 0, -0.5), by="direct")
+    assert lit[:, :32].sum() > 1.5 * lit[:, 32:].sum()
+    loaded = merlin.Maps.load(tmp_path / "ball", model=model)
+    np.testing.assert_allclose(loaded.relight((-0.7, 0, -0.5), by="direct"), lit, atol=0.02)
+    with pytest.raises(merlin.StoppedError):
+        surface.save(tmp_path / "never", stop=lambda: True)
+    assert not (tmp_path / "never").exists()
+
+
+def test_a_photograph_becomes_a_surface(kept_maps):
+    """By relit pictures."""
+    told = []
+    def stop():
+        return len(told) > 3
+    with pytest.raises(merlin.StoppedError):
+        kept_maps.stereo(progress=lambda *step: told.append(step), stop=stop)
+    assert told[0][0] == "solving"
+
+
 WRONG = {
     "no pictures": ([], None, "no pictures"), "too few": (2, None, "."), "lights of another number": (8, 5, "of shape"),
     "no folder": ("/nowhere/at/all", None, "no folder"), "sizes": ("sizes", None, "."),
