@@ -16,7 +16,7 @@ if(NOT MERLIN_SANITIZE AND NOT MERLIN_FUZZ)
   target_link_options(libmerlin PRIVATE -Wl,--no-undefined)
 endif()
 
-foreach(name relight_photo photo_to_mesh)
+foreach(name relight_photo photo_to_mesh capture_to_surface)
   add_executable(${name} EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/examples/${name}.c)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/include)
   target_link_libraries(${name} PRIVATE libmerlin m)

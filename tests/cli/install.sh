@@ -40,13 +40,17 @@ makes() {
 echo "the examples are built by pkg-config"
 description=$(dirname prefix/lib*/pkgconfig/merlin.pc)
 export PKG_CONFIG_PATH=$scratch/$description
-for name in relight_photo photo_to_mesh; do
+for name in relight_photo photo_to_mesh capture_to_surface; do
     # shellcheck disable=SC2046
     cc "$examples/$name.c" $(pkg-config --cflags --libs merlin) -lm -o $name ||
         complain "pkg-config's answer does not build $name"
 done
 makes ./relight_photo pkg-config.png
 makes ./photo_to_mesh mesh.glb
+"$MERLIN" relight disc.hdr --model weights.safetensors --dome 12 --lp -o capture -q || complain "no pictures of the disc"
+LD_LIBRARY_PATH=$(dirname prefix/lib*/libmerlin.so) ./capture_to_surface weights.safetensors capture captured 2>stderr ||
+    complain "./capture_to_surface fails: $(cat stderr)"
+present captured/{maps.exr,report.json,mesh.glb,relit.png}
 present "$(pkg-config --variable=models merlin)/merlin-point.safetensors"
 [[ $(pkg-config --modversion merlin) == "$version" ]] || complain "pkg-config's version is not the command's"
 
