@@ -46,7 +46,8 @@ static void relief(const float l[3], merlin_image *out)
     assert_int_equal(img_new(out, WIDTH, HEIGHT, 3), OK);
     for (int i = 0; i < PIXELS; i++) {
         if (!is_object(i)) continue;
-        const float x = (float)(i % WIDTH), y = (float)(i / WIDTH);
+        const int row = i / WIDTH;
+        const float x = (float)(i % WIDTH), y = (float)row;
         const vec3 n = vec3_normalize(vec3_make(0.5f * sinf(x / 5), 0.6f * cosf(y / 6), 1));
         const float shade = fmaxf(0, (float)vec3_dot(n, vec3_make(l[0], l[1], l[2])));
         out->data[3 * i] = shade * (i % WIDTH < WIDTH / 2 ? 0.8f : 0.2f);
