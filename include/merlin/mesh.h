@@ -53,12 +53,13 @@ merlin_status merlin_mesh_from_maps(const merlin_maps *maps, const merlin_mesh_p
 merlin_status merlin_mesh_from_surface(const merlin_surface *surface, merlin_mesh *out);
 void merlin_mesh_free(merlin_mesh *mesh);
 
-/* Returns MERLIN_WRONG_USE unless a mesh can be written under this name, which ends in .ply, .obj or .glb, so that one
- * can check before long work. */
+/* Returns MERLIN_WRONG_USE unless a mesh can be written under this name, which ends in .ply, .obj, .glb or .usda, so
+ * that one can check before long work. */
 merlin_status merlin_mesh_check_name(const char *path);
 /* Writes a mesh in the format of the path's ending: .ply (binary) with colours of vertices, .obj with NAME.mtl and, if
- * it has albedo, NAME.png, or .glb with albedo, roughness and normals as textures. After a failure no file is left
- * incomplete. written (may be NULL) gets their paths. A GLB has at most 4 GiB. */
+ * it has albedo, NAME.png, .glb with albedo, roughness and normals as textures, or .usda (a preview surface) with the
+ * same as NAME.png, NAME_roughness.png and NAME_normal.png beside it. After a failure no file is left incomplete.
+ * written (may be NULL) gets their paths. A GLB has at most 4 GiB. */
 merlin_status merlin_mesh_write(const merlin_mesh *mesh, const char *path, merlin_files *written);
 
 #ifdef __cplusplus

@@ -54,7 +54,7 @@ class Mesh:
 
     def save(self, path: PathLike) -> List[str]:
         """Writes the mesh by the path's ending: .ply with colours of vertices, .obj with .mtl and .png beside it, .glb
-        with albedo, roughness and normals as textures. Returns the paths of the files."""
+        with albedo, roughness and normals as textures, .usda with these beside it. Returns the paths of the files."""
         self._check()
         written = Owner(h.Files(), "files_free")
         check("mesh_write", self._owner.at, path_bytes(path), written.at)

@@ -56,7 +56,7 @@ static const char help[] =
     "      --flash          the light was the camera's flash and nothing else; models of any light are told so\n"
     "      --exposure EV    brighten by EV stops for the network; default auto: only if too dark or too bright\n"
     "      --mesh [FILE]    write mesh.glb, too: the object's front with albedo, normals and roughness; or, of one\n"
-    "                       photograph, FILE, which ends in .ply, .obj or .glb and may be given again\n"
+    "                       photograph, FILE, which ends in .ply, .obj, .glb or .usda and may be given again\n"
     "      --html           write viewer.html, too: a page in which a browser lights the object (merlin view)\n"
     "      --share K/N      of several photographs the K-th of N equal shares alone, for as many machines\n"
     "  -r, --resume         of several, those alone whose maps are not there yet, or older than photograph or mask\n"

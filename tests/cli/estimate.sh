@@ -244,6 +244,12 @@ rm -rf out.merlin
 succeeds 'disc.hdr' estimate . "${small[@]}"
 grep -q "5 files skipped: a.glb, a.mtl, a.obj, a.ply (no picture), a.png (a mesh's texture)" "$scratch/stderr" || complain "a mesh's texture: $(head -1 "$scratch/stderr")"
 rm -r out.merlin a.*
+succeeds '"files":\["./a.png","./a.usda","./a_normal.png","./a_roughness.png","out.merlin/albedo.png"' estimate --mesh a.usda disc.hdr --json "${small[@]}"
+succeeds 'disc.hdr' estimate . "${small[@]}"
+grep -q "4 files skipped: a.png, a_normal.png, a_roughness.png (a mesh's texture), a.usda (no picture)" "$scratch/stderr" ||
+    complain "textures of USD: $(head -1 "$scratch/stderr")"
+rm -r out.merlin a.* a_*
+refuses 1 "its texture would replace the map normal.png" estimate disc.hdr --mesh out.merlin/normal.usda "${small[@]}"
 refuses 2 'a mesh.s name ends in' estimate disc.hdr --mesh a.stl
 refuses 2 'one photograph' estimate disc.hdr disc.hdr --mesh a.obj
 refuses 2 'one photograph' estimate . --mesh a.obj

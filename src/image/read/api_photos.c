@@ -56,12 +56,24 @@ static status read_folder(const char *folder, img_folder *f, bool *results)
     return OK;
 }
 
-/* Tells whether a picture is the texture of an OBJ named by --mesh. */
+/* Tells whether a name is the mesh's, NAME.mtl, with the ending of a texture in the place of its own. */
+static bool is_texture_of(const char *texture, const char *ending, const char *mesh)
+{
+    if (!file_ends_in(texture, ending)) return false;
+    const size_t stem = strlen(texture) - strlen(ending);
+    return strncmp(mesh, texture, stem) == 0 && mesh[stem] == '.' && !strchr(mesh + stem + 1, '.');
+}
+
+/* Tells whether a picture is a texture of an OBJ or USD that --mesh named. */
 static bool is_texture(const img_folder *f, const img_folder_file *file)
 {
-    size_t stem = strlen(file->name) - strlen(".png");
-    for (size_t i = 0; i < f->count && file_ends_in(file->name, ".png"); i++)
-        if (file_ends_in(f->at[i].name, ".mtl") && strncmp(f->at[i].name, file->name, stem + 1) == 0) return true;
+    static const char *const of_usd[] = {".png", "_normal.png", "_roughness.png"};
+    for (size_t i = 0; i < f->count && file_ends_in(file->name, ".png"); i++) {
+        const char *mesh = f->at[i].name;
+        if (file_ends_in(mesh, ".mtl") && is_texture_of(file->name, ".png", mesh)) return true;
+        for (int k = 0; k < 3 && file_ends_in(mesh, ".usda"); k++)
+            if (is_texture_of(file->name, of_usd[k], mesh)) return true;
+    }
     return false;
 }
 

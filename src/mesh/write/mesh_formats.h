@@ -9,5 +9,6 @@
 status mesh_write_ply(const char *path, const merlin_mesh *m);
 status mesh_write_obj(const char *path, const merlin_mesh *m);
 status mesh_write_glb(const char *path, const merlin_mesh *m);
+status mesh_write_usda(const char *path, const merlin_mesh *m);
 
 #endif

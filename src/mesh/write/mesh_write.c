@@ -9,17 +9,31 @@
 #include "base/file.h"
 #include "mesh/write/mesh_formats.h"
 
-enum { MOST_FILES = 3 };
+enum { MOST_FILES = 4 };
+
+/* What a mesh must have for a file of a format. */
+typedef enum need { NEEDS_NOTHING, NEEDS_ALBEDO, NEEDS_FACE_NORMALS, NEEDS_ROUGHNESS } need;
 
 typedef struct format {
     const char *ending;
     status (*write)(const char *path, const merlin_mesh *m);
-    const char *textured[MOST_FILES], *plain[MOST_FILES]; /* the files, sorted, of meshes with and without albedo */
+    struct {
+        const char *ending;
+        need need;
+    } files[MOST_FILES]; /* sorted, behind the last one NULL */
 } format;
 
-static const format formats[] = {{".ply", mesh_write_ply, {".ply"}, {".ply"}},
-                                 {".obj", mesh_write_obj, {".mtl", ".obj", ".png"}, {".mtl", ".obj"}},
-                                 {".glb", mesh_write_glb, {".glb"}, {".glb"}}};
+static const format formats[] = {
+    {".ply", mesh_write_ply, {{".ply", NEEDS_NOTHING}}},
+    {".obj", mesh_write_obj, {{".mtl", NEEDS_NOTHING}, {".obj", NEEDS_NOTHING}, {".png", NEEDS_ALBEDO}}},
+    {".glb", mesh_write_glb, {{".glb", NEEDS_NOTHING}}},
+    {".usda",
+     mesh_write_usda,
+     {{".png", NEEDS_ALBEDO},
+      {".usda", NEEDS_NOTHING},
+      {"_normal.png", NEEDS_FACE_NORMALS},
+      {"_roughness.png", NEEDS_ROUGHNESS}}},
+};
 enum { FORMATS = sizeof formats / sizeof formats[0] };
 
 static const format *format_of(const char *path)
@@ -33,7 +47,7 @@ merlin_status merlin_mesh_check_name(const char *path)
 {
     status s = api_needs(__func__, path);
     if (s != OK) return s;
-    return format_of(path) ? OK : fail(MERLIN_WRONG_USE, "%s: a mesh's name ends in .ply, .obj or .glb", path);
+    return format_of(path) ? OK : fail(MERLIN_WRONG_USE, "%s: a mesh's name ends in .ply, .obj, .glb or .usda", path);
 }
 
 /* ---- meshes that anybody may have made ---- */
@@ -66,19 +80,34 @@ static status check(const merlin_mesh *m)
 
 /* ---- what is written ---- */
 
-/* Lists names before anything is written, so that a lack of memory leaves no file. */
-static status list_files(const format *f, const char *path, bool textured, merlin_files *out)
+static bool has(const merlin_mesh *m, need n)
 {
-    const char *const *endings = textured ? f->textured : f->plain;
+    switch (n) {
+    case NEEDS_ALBEDO:
+        return m->albedo.data != NULL;
+    case NEEDS_FACE_NORMALS:
+        return m->face_normals != NULL;
+    case NEEDS_ROUGHNESS:
+        return m->roughness.data != NULL;
+    default:
+        return true;
+    }
+}
+
+/* Lists names before anything is written, so that a lack of memory leaves no file. */
+static status list_files(const format *f, const char *path, const merlin_mesh *m, merlin_files *out)
+{
     const int stem = (int)(strlen(path) - strlen(f->ending));
     out->at = calloc(MOST_FILES, sizeof *out->at);
-    for (size_t i = 0; out->at && i < MOST_FILES && endings[i]; i++) {
+    bool lost = !out->at;
+    for (size_t i = 0; !lost && i < MOST_FILES && f->files[i].ending; i++) {
+        if (!has(m, f->files[i].need)) continue;
         /* the ending that was asked for keeps its case */
-        const char *ending = strcmp(endings[i], f->ending) == 0 ? path + stem : endings[i];
-        if (asprintf(&out->at[i], "%.*s%s", stem, path, ending) < 0) break;
-        out->count++;
+        const char *ending = strcmp(f->files[i].ending, f->ending) == 0 ? path + stem : f->files[i].ending;
+        lost = asprintf(&out->at[out->count], "%.*s%s", stem, path, ending) < 0;
+        out->count += !lost;
     }
-    if (out->count > 0 && (out->count == MOST_FILES || !endings[out->count])) return OK;
+    if (!lost) return OK;
     merlin_files_free(out);
     return fail(MERLIN_NO_MEMORY, "no memory for file names");
 }
@@ -98,7 +127,7 @@ merlin_status merlin_mesh_write(const merlin_mesh *mesh, const char *path, merli
     if (s == OK) s = merlin_mesh_check_name(path);
     if (s == OK) s = check(mesh);
     if (s == OK) s = file_check_writable(path);
-    if (s == OK) s = list_files(format_of(path), path, mesh->albedo.data != NULL, &files);
+    if (s == OK) s = list_files(format_of(path), path, mesh, &files);
     if (s == OK) s = format_of(path)->write(path, mesh);
     if (s == OK && written) {
         add_sizes(&files);

@@ -14,6 +14,7 @@
 #include "base/vec.h"
 #include "image/write/write.h"
 #include "mesh/write/mesh_formats.h"
+#include "mesh/write/mesh_normal_map.h"
 
 enum { FLOAT = 5126, UNSIGNED_INT = 5125, ARRAY_BUFFER = 34962, ELEMENT_ARRAY_BUFFER = 34963, TRIANGLES = 4 };
 enum { HEADER = 12, CHUNK_HEADER = 8, MOST_PARTS = 8 };
@@ -46,25 +47,12 @@ static int add_part(glb *g, part p)
     return g->count++;
 }
 
-/* Returns the normals to which the normal map is relative, or the only ones. */
-static float *base_normals(const merlin_mesh *m)
-{
-    return m->face_normals ? m->face_normals : m->normals;
-}
-
-/* Returns the direction to the right, made perpendicular to the normal. */
-static vec3 tangent_of(vec3 n)
-{
-    vec3 t = vec3_normalize(vec3_make(1 - n.x * n.x, -n.x * n.y, -n.x * n.z));
-    return vec3_dot(t, t) > (real)0.5 ? t : vec3_make(0, 0, -1);
-}
-
 static status add_tangents(glb *g, const merlin_mesh *m)
 {
     g->tangent = malloc(4 * m->vertex_count * sizeof *g->tangent);
     if (!g->tangent) return fail(MERLIN_NO_MEMORY, "no memory for a mesh of %zu vertices", m->vertex_count);
     for (size_t v = 0; v < m->vertex_count; v++) {
-        vec3 t = tangent_of(vec3_of(base_normals(m) + 3 * v));
+        vec3 t = mesh_tangent_of(vec3_of(mesh_base_normals(m) + 3 * v));
         float *to = g->tangent + 4 * v;
         vec3_put(t, to);
         to[3] = 1;
@@ -92,7 +80,7 @@ static void add_geometry(glb *g, const merlin_mesh *m)
         }
     }
     add_part(g, position);
-    add_part(g, (part){base_normals(m), 3 * n * sizeof(float), n, "VEC3", FLOAT, ARRAY_BUFFER, {0}, {0}, false});
+    add_part(g, (part){mesh_base_normals(m), 3 * n * sizeof(float), n, "VEC3", FLOAT, ARRAY_BUFFER, {0}, {0}, false});
     add_part(g, (part){m->uvs, 2 * n * sizeof(float), n, "VEC2", FLOAT, ARRAY_BUFFER, {0}, {0}, false});
     add_part(g, (part){m->triangles,
                        corners * sizeof *m->triangles,
@@ -130,31 +118,12 @@ static status add_albedo(glb *g, const char *path, const img *albedo)
     return s;
 }
 
-static void fill_normal_map(const merlin_mesh *m, img *map)
-{
-    size_t count = (size_t)map->width * (size_t)map->height;
-    for (size_t i = 0; i < count; i++) {
-        map->data[3 * i] = map->data[3 * i + 1] = 0.5f;
-        map->data[3 * i + 2] = 1;
-    }
-    for (size_t v = 0; v < m->vertex_count; v++) {
-        vec3 n = vec3_of(base_normals(m) + 3 * v), t = tangent_of(n), b = vec3_cross(n, t);
-        vec3 wanted = vec3_of(m->normals + 3 * v);
-        float *to = map->data + 3 * (size_t)m->pixels[v];
-        to[0] = 0.5f * (float)vec3_dot(wanted, t) + 0.5f;
-        to[1] = 0.5f * (float)vec3_dot(wanted, b) + 0.5f;
-        to[2] = 0.5f * (float)vec3_dot(wanted, n) + 0.5f;
-    }
-}
-
 static status add_normal_map(glb *g, const char *path, const merlin_mesh *m)
 {
     img map = {0};
     size_t size = 0;
-    status s = img_new(&map, m->width, m->height, 3);
-    if (s != OK) return s;
-    fill_normal_map(m, &map);
-    s = png_bytes(path, &map, IMG_LINEAR8, &g->normal, &size);
+    status s = mesh_normal_map(m, &map);
+    if (s == OK) s = png_bytes(path, &map, IMG_LINEAR8, &g->normal, &size);
     img_free(&map);
     if (s == OK) g->normal_part = add_part(g, (part){.data = g->normal, .size = size});
     return s;
