@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Memory runs out at any allocation between pictures, a surface and its mesh: every failure is reported, the surface is
  * empty, no mesh is left, and the next call gives the same surface as ever. */
+#include "merlin/calibrate.h"
 #include "merlin/mesh.h"
+#include "merlin/pictures.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -9,7 +11,7 @@
 #include "capture_files.h"
 #include "each_allocation.h"
 
-enum { SIDE = 16, PIXELS = SIDE * SIDE, LIGHTS = 8 };
+enum { SIDE = 16, PIXELS = SIDE * SIDE, LIGHTS = 8, FOLDER_LIGHTS = 4 };
 static const float RADIUS = 0.3f; /* of the ball at (0, 0, -1) */
 
 typedef struct work {
@@ -217,7 +219,7 @@ static void without_memory_no_method_gives_a_surface(void **state)
 static void without_memory_no_mesh_is_left(void **state)
 {
     (void)state;
-    static const char *const names[] = {"mesh.ply", "mesh.obj", "mesh.glb"};
+    static const char *const names[] = {"mesh.ply", "mesh.obj", "mesh.glb", "mesh.usda"};
     work w = work_of(MERLIN_DISTANT_LIGHTS, (merlin_stereo_params){.method = MERLIN_STEREO_LS});
     assert_int_equal(new_capture(&w), MERLIN_OK);
     assert_int_equal(solve(&w), MERLIN_OK);
@@ -230,12 +232,93 @@ static void without_memory_no_mesh_is_left(void **state)
     work_end(&w);
 }
 
+/* ---- folders of pictures ---- */
+
+typedef struct folder_work {
+    merlin_capture *capture;
+    merlin_calibration found;
+    uint64_t first;
+} folder_work;
+
+/* Writes pictures of the ball and the list of their lights into the test's folder. */
+static void write_ball(int side)
+{
+    FILE *list = fopen(scratch_path("lights.txt"), "w");
+    assert_non_null(list);
+    for (int k = 0; k < FOLDER_LIGHTS; k++) {
+        const merlin_light l = light_at(k, MERLIN_DISTANT_LIGHTS);
+        char name[32];
+        snprintf(name, sizeof name, "ball%d.png", k);
+        merlin_image small = picture_under(&l, false), picture;
+        assert_int_equal(merlin_image_resize(&small, side, side, &picture), MERLIN_OK);
+        assert_int_equal(merlin_image_write(scratch_path(name), &picture), MERLIN_OK);
+        free(small.data);
+        fprintf(list, "%g %g %g\n", (double)l.direction[0], (double)l.direction[1], (double)l.direction[2]);
+        free(picture.data);
+    }
+    assert_int_equal(fclose(list), 0);
+}
+
+static int read_capture(void *context)
+{
+    folder_work *w = context;
+    return merlin_capture_read(scratch, NULL, &w->capture);
+}
+
+static const char *check_read(void *context, int result)
+{
+    folder_work *w = context;
+    const char *fault = (result == MERLIN_OK) == (w->capture != NULL) ? NULL : "a capture";
+    merlin_capture_free(w->capture);
+    w->capture = NULL;
+    return fault;
+}
+
+static int calibrate(void *context)
+{
+    folder_work *w = context;
+    return merlin_calibrate(scratch, &(merlin_calibrate_params){.ball = MERLIN_MATTE_BALL}, &w->found);
+}
+
+static const char *check_calibration(void *context, int result)
+{
+    folder_work *w = context;
+    const char *fault = NULL;
+    if (result == MERLIN_OK) {
+        uint64_t sum = sum_of(1, w->found.lights, (size_t)w->found.count * sizeof *w->found.lights);
+        if (w->first && sum != w->first) fault = "other lights than ever";
+        w->first = sum;
+    } else if (w->found.count || w->found.lights || w->found.names || w->found.brightest.data) {
+        fault = "a calibration";
+    }
+    merlin_calibration_free(&w->found);
+    return fault;
+}
+
+static void without_memory_no_folder_is_read(void **state)
+{
+    (void)state;
+    folder_work w = {0};
+    write_ball(SIDE);
+    each_allocation_fails(&(memory_trial){"capture folder", read_capture, check_read, &w});
+}
+
+static void without_memory_no_light_is_calibrated(void **state)
+{
+    (void)state;
+    folder_work w = {0};
+    write_ball(4 * SIDE); /* a ball of fewer pixels is none */
+    each_allocation_fails(&(memory_trial){"calibration", calibrate, check_calibration, &w});
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(without_memory_no_pictures_are_taken),
         cmocka_unit_test(without_memory_no_method_gives_a_surface),
         in_scratch(without_memory_no_mesh_is_left),
+        in_scratch(without_memory_no_folder_is_read),
+        in_scratch(without_memory_no_light_is_calibrated),
     };
     merlin_set_threads(1); /* the n-th allocation is the same one each time */
     return cmocka_run_group_tests(tests, NULL, NULL);
