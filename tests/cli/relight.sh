@@ -98,6 +98,18 @@ relight disc.merlin --light 0.5,0.2,-0.4 --color '#ffffff' --light 0.5,0.2,-0.4 
     --color 1,0.4,0.1 -o colors >stdout || complain "--color failed"
 cmp -s colors/relit_000.png again/relit.png || complain "white is another light"
 cmp -s colors/relit_000.png colors/relit_001.png && complain "a bulb is white"
+echo "lamps together in one picture"
+relight disc.merlin --together --no-bounces --light 0.5,0.2,-0.4 --light 0.5,0.2,-0.4 -o both >stdout || complain "--together failed"
+relight disc.merlin --no-bounces --light 0.5,0.2,-0.4 --power 2 -o double >stdout || complain "--power failed"
+[ "$(ls both)" = "$(ls double)" ] || complain "two lamps together are not one picture: $(ls both)"
+cmp -s both/relit.png double/relit.png || complain "a lamp twice is not a lamp of twice the power"
+succeeds '"lights":2' relight disc.merlin --together --light 0.5,0.2,-0.4 --color '#ff0000' --direction -1,0,1 --color '#0000ff' -o two --json
+cmp -s two/relit.png both/relit.png && complain "--together forgets colours"
+relight disc.merlin --together --light 0.5,0.2,-0.4 --light 0,0,0 -o - >printed.png && [ -s printed.png ] || complain "-o - refuses lamps together"
+refuses 2 '--together is of the lamps' relight disc.merlin --together --env disc.hdr
+refuses 2 '--together is of the lamps' relight disc.merlin --together --dome 4 --light 0,0,0
+refuses 2 'beside which its lamps stand' relight disc.merlin --together --light 0,0,0 --orbit 4
+refuses 2 'knows one lamp alone' relight disc.merlin --together --light 0,0,0 --by network
 for color in 500K '#ff' 1,2 -1,0,0 0,0,0 red; do refuses 2 '--color' relight disc.merlin --light 0,0,0 --color "$color"; done
 refuses 2 '--power' relight disc.merlin --light 0,0,0 --power 0
 refuses 2 'no length' relight disc.merlin --direction 0,0,0

@@ -44,7 +44,7 @@ typedef struct request {
     int orbit, frame;
     relight_dome dome;
     relight_rti rti;
-    bool found, near, no_shadows, no_bounces, matte, json, quiet, help;
+    bool found, near, together, no_shadows, no_bounces, matte, json, quiet, help;
     int captured; /* whether input is a capture's maps */
 } request;
 
@@ -119,7 +119,7 @@ static status check_dome(request *r)
 static status check_standard_output(const request *r)
 {
     if (!to_standard_output(r)) return OK;
-    if (r->orbit || r->dome.count || r->lamps.count > 1)
+    if (r->orbit || r->dome.count || (r->lamps.count > 1 && !r->together))
         return fail(MERLIN_WRONG_USE, "-o - writes one picture to standard output; for several name a folder");
     if (r->json)
         return fail(MERLIN_WRONG_USE, "-o - leaves standard output to the picture; there is no room for --json");
@@ -137,6 +137,8 @@ static status check_way(request *r)
         return fail(MERLIN_WRONG_USE, "--no-bounces keeps cast shadows: give it or --no-shadows, not both");
     if (r->matte && by_network)
         return fail(MERLIN_WRONG_USE, "--matte is of --by brdf; the relighting decoder paints gloss");
+    if (r->together && by_network)
+        return fail(MERLIN_WRONG_USE, "--together is of --by brdf; the relighting decoder knows one lamp alone");
     if (r->found && by_network)
         return fail(MERLIN_WRONG_USE, "--found-light is of --by brdf; the relighting decoder knows one lamp alone");
     status s = merlin_maps_look(r->input, &r->captured);
@@ -169,6 +171,10 @@ static status check(request *r)
                     "--found-light comes alone: without --light, --direction, --lights, --dome and --env");
     if (r->found && r->exposing.automatic)
         return fail(MERLIN_WRONG_USE, "--found-light is exposed as the photograph is, or brighter by --exposure EV");
+    if (r->together && ((r->lamps.count == 0 && !r->list) || r->dome.count))
+        return fail(MERLIN_WRONG_USE, "--together is of the lamps of --light, --direction and --lights");
+    if (r->together && r->orbit && !r->env)
+        return fail(MERLIN_WRONG_USE, "--together goes with an --orbit of an --env, beside which its lamps stand");
     if (r->frame && r->orbit == 0) return fail(MERLIN_WRONG_USE, "--frame is the side of an --orbit's frames");
     status s = check_dome(r);
     if (s == OK) s = check_standard_output(r);
@@ -182,6 +188,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"light", .take = lamp_take_light, .into = &r->lamps, .many = true},
         {"direction", .take = lamp_take_direction, .into = &r->lamps, .many = true},
         {"lights", .text = &r->list},
+        {"together", .flag = &r->together},
         {"orbit", .integer = &r->orbit, .low = 2, .high = RELIGHT_MOST_FRAMES},
         {"dome", .integer = &r->dome.count, .low = 3, .high = RELIGHT_MOST_DOME},
         {"lp", .flag = &r->dome.lp},
@@ -226,7 +233,7 @@ static status parse(int *argc, char ***argv, request *r)
 static status check_lamps(const request *r)
 {
     status s = OK;
-    if (r->env && r->orbit && r->lamps.count > 1)
+    if (r->env && r->orbit && r->lamps.count > 1 && !r->together)
         return fail(MERLIN_WRONG_USE, "an --orbit of the --env goes round beside one --light, not %zu", r->lamps.count);
     for (size_t i = 0; i < r->lamps.count && s == OK; i++)
         s = merlin_relighting_check(r->how, &r->lamps.at[i], r->env != NULL);
@@ -332,6 +339,7 @@ static relight_job job_of(const request *r, const char *output)
 {
     relight_job job = {.output = output,
                        .lamps = r->lamps,
+                       .together = r->together,
                        .how = r->how,
                        .matte = r->matte || r->captured,
                        .format = r->format,
@@ -354,7 +362,7 @@ static relight_job job_of(const request *r, const char *output)
 static void plan(const request *r, stage_bar *bar)
 {
     stage_cost stages[STAGE_BAR_MOST];
-    double pixels = expect_pixels(r->input), lamps = (double)r->lamps.count + r->dome.count;
+    double pixels = expect_pixels(r->input), lamps = (r->together ? 1 : (double)r->lamps.count) + r->dome.count;
     size_t count = expect_estimate(pixels, stages, 0);
     expect_relight how = {.pixels = pixels,
                           .pictures = (r->env || r->found) && r->lamps.count == 0 ? lamps + 1 : lamps,

@@ -24,6 +24,7 @@ static const char help_on_lights[] =
     "                       a lamp far away, toward which x,y,z points; as bright as one at distance 1; likewise\n"
     "      --lights FILE    lamps from a file: places, x y z a line, or the directions of an .lp file (far away, but\n"
     "                       with --near)\n"
+    "      --together       these lamps in one picture, instead of a picture each\n"
     "      --orbit N        N frames (2 to 240) with the lamp on a circle in front of the object, also as orbit.webp\n"
     "                       and orbit.gif\n"
     "      --dome N         N pictures (3 to 999), dome_000.png and on, under far lights spread evenly over the "

@@ -39,6 +39,7 @@ typedef struct relight_job {
     const char *output;              /* folder */
     const char *const *inputs;       /* as in staging_begin */
     lamp_options lamps;              /* lamps of relit_000 …, of the photograph's size */
+    bool together;                   /* one picture under all of them instead of one for each */
     merlin_environment *environment; /* an orbit turns it; beside the lights, and alone where there are none; or NULL */
     bool found;                      /* use the light estimated from the photograph instead of lamps and environment */
     float turn;                      /* rotation about the vertical in degrees, as for merlin_relight_found */

@@ -54,6 +54,23 @@ static void gather(const relight_job *job, merlin_lamp *all)
         all[i].power[0] = all[i].power[1] = all[i].power[2] = 1;
 }
 
+/* Meters lamps for one picture each, or for one picture of all together: what each needs is then added up, as their
+ * light does. */
+static status meter(const relight_work *w, const merlin_lamp *all, size_t count, float *white)
+{
+    const relight_job *job = w->job;
+    if (!job->together) return merlin_relighter_meter(w->relighter, all, count, job->environment, white);
+    float sum = 0;
+    status s = OK;
+    for (size_t i = 0; i < count && s == OK; i++) {
+        float one = 0;
+        s = merlin_relighter_meter(w->relighter, all + i, 1, job->environment, &one);
+        sum += one;
+    }
+    if (s == OK) *white = sum;
+    return s;
+}
+
 static status expose(relight_work *w)
 {
     const relight_job *job = w->job;
@@ -64,7 +81,7 @@ static status expose(relight_work *w)
     merlin_lamp *all = malloc((count + 1) * sizeof *all);
     if (!all) return fail(MERLIN_NO_MEMORY, "no memory for %zu lamps", count);
     gather(job, all);
-    status s = metered ? merlin_relighter_meter(w->relighter, all, count, job->environment, &white) : OK;
+    status s = metered ? meter(w, all, count, &white) : OK;
     white /= exp2f(job->ev);
     if (s == OK) s = merlin_relighter_set_white(w->relighter, white);
     w->result->ev = log2f(as_source / white);

@@ -11,7 +11,8 @@ status relight_check(const relight_work *w)
 
 size_t relight_count_lights(const relight_job *job)
 {
-    return job->lamps.count > 0 ? job->lamps.count : job->environment || job->found;
+    if (job->lamps.count > 0) return job->together ? 1 : job->lamps.count;
+    return job->environment || job->found;
 }
 
 size_t relight_count_whole(const relight_job *job)
@@ -50,7 +51,7 @@ bool relight_surroundings_turn(const relight_job *job)
 const merlin_lamp *relight_lamps(const relight_work *w, size_t i, int *count)
 {
     const relight_job *job = w->job;
-    *count = job->found ? w->found.count : job->lamps.count > 0;
+    *count = job->found ? w->found.count : job->together ? (int)job->lamps.count : job->lamps.count > 0;
     return job->found ? w->found.lamps : job->lamps.at + i;
 }
 

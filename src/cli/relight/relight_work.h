@@ -20,7 +20,8 @@ typedef struct relight_work {
 status relight_check(const relight_work *w);
 /* Tells whether an orbit rotates the environment instead of a lamp. */
 bool relight_surroundings_turn(const relight_job *job);
-/* Returns the lamps of picture i and their number: the estimated light's, else the user's i-th, if any. */
+/* Returns the lamps of picture i and their number: the estimated light's, else the user's i-th, if any, or all of his
+ * together. */
 const merlin_lamp *relight_lamps(const relight_work *w, size_t i, int *count);
 /* Returns the number of pictures for single lights, or for the environment alone. */
 size_t relight_count_lights(const relight_job *job);
