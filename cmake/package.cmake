@@ -8,7 +8,6 @@ endif()
 
 add_executable(merlin-launch src/launch/launch.c)
 set_target_properties(merlin-launch PROPERTIES OUTPUT_NAME launch/merlin)
-target_compile_definitions(merlin-launch PRIVATE LAUNCH_NAME="merlin")
 install(TARGETS merlin-launch)
 install(DIRECTORY python/merlin DESTINATION lib/python3/dist-packages
   FILES_MATCHING PATTERN "*.py" PATTERN py.typed PATTERN __pycache__ EXCLUDE)
