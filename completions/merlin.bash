@@ -25,7 +25,7 @@ _merlin() {
         return
     fi
     if ((COMP_CWORD == 2)); then # words that may stand where a file may
-        [[ ${words[0]} == info ]] && verbs="merlin-point merlin-env"
+        [[ ${words[0]} == info ]] && verbs="merlin-any merlin-point merlin-env"
         mapfile -t more < <(compgen -W "$verbs" -- "$current")
     elif [[ " "$verbs" " =~ [[:space:]]"${COMP_WORDS[2]}"[[:space:]] ]]; then
         words+=("${COMP_WORDS[2]}")
@@ -37,7 +37,7 @@ _merlin() {
     --integrate) mapfile -t COMPREPLY < <(compgen -W "ls edges" -- "$current") ;;
     --sphere) mapfile -t COMPREPLY < <(compgen -W "chrome matte" -- "$current") ;;
     --precision) mapfile -t COMPREPLY < <(compgen -W "float32 bfloat16" -- "$current") ;;
-    --model | --init | --init-shared) mapfile -t COMPREPLY < <(compgen -W "merlin-point merlin-env" -f -- "$current") ;;
+    --model | --init | --init-shared) mapfile -t COMPREPLY < <(compgen -W "merlin-any merlin-point merlin-env" -f -- "$current") ;;
     --data | --means | --env-dir | --material-dir) mapfile -t COMPREPLY < <(compgen -d -- "$current") ;;
     *)
         if [[ $current == -* ]]; then

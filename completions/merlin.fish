@@ -42,7 +42,7 @@ for program in merlin merlin-lab
     complete -c $program -n 'test (count (__merlin_words)) = 0' -f -a '--help --version -V'
     complete -c $program -n 'test (count (__merlin_words)) = 1; and test (__merlin_words)[1] = help' -f -a '(__merlin_commands)'
     complete -c $program -n 'test (count (__merlin_words)) = 1; and test (__merlin_words)[1] != help' -a '(__merlin_verbs (__merlin_words)[1])'
-    complete -c $program -n 'test (count (__merlin_words)) = 1; and test (__merlin_words)[1] = info' -a 'merlin-point merlin-env'
+    complete -c $program -n 'test (count (__merlin_words)) = 1; and test (__merlin_words)[1] = info' -a 'merlin-any merlin-point merlin-env'
     complete -c $program -n 'test (count (__merlin_words)) -ge 1; and string match --quiet -- "-*" (commandline -ct)' -f -a '(__merlin_options)'
     complete -c $program -n '__merlin_previous --by' -f -a 'brdf network'
     complete -c $program -n '__merlin_previous --format' -f -a 'png jpg'
@@ -50,5 +50,5 @@ for program in merlin merlin-lab
     complete -c $program -n '__merlin_previous --integrate' -f -a 'ls edges'
     complete -c $program -n '__merlin_previous --sphere' -f -a 'chrome matte'
     complete -c $program -n '__merlin_previous --precision' -f -a 'float32 bfloat16'
-    complete -c $program -n '__merlin_previous --model --init --init-shared' -a 'merlin-point merlin-env'
+    complete -c $program -n '__merlin_previous --model --init --init-shared' -a 'merlin-any merlin-point merlin-env'
 end

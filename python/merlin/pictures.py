@@ -120,7 +120,11 @@ def mask(source: Picture, what: str = "a mask") -> Owner:
 
 def image_for(array: Any, what: str = "a picture") -> Tuple[Any, np.ndarray]:
     """An image that shows an array of floats, without owning it; the array must live as long."""
-    floats = np.ascontiguousarray(_array(array, what), dtype=np.float32)
+    values = _array(array, what)
+    if values.dtype.kind != "f" and values.dtype != np.bool_:
+        raise TypeError(f"{what} is of linear floats here, not of {values.dtype}: divide what is linear, and read what is "
+                        "sRGB by merlin.read_image")
+    floats = np.ascontiguousarray(values, dtype=np.float32)
     channels = floats.shape[2] if floats.ndim == 3 else 1
     image = h.Image(width=floats.shape[1], height=floats.shape[0], channels=channels,
                     data=floats.ctypes.data_as(ctypes.c_void_p))

@@ -14,15 +14,16 @@
 #include "command/photos.h"
 #include "merlin/weights.h"
 
-static const char help[] = "usage: merlin info WEIGHTS [--tensors] [--json] [--quiet]\n\n"
-                           "Says what is in a weights file, or in the shipped merlin-point or merlin-env: the model's\n"
-                           "configuration, where the weights come from, their number, and what one picture of 256x256\n"
-                           "costs.\n\n"
-                           "      --tensors    every tensor with its type and shape\n"
-                           "      --json       as JSON\n"
-                           "  -t, --threads N  how many threads work (default: one a processor)\n"
-                           "  -q, --quiet      no other output than errors\n"
-                           "  -h, --help       this text\n";
+static const char help[] =
+    "usage: merlin info WEIGHTS [--tensors] [--json] [--quiet]\n\n"
+    "Says what is in a weights file, or in the shipped merlin-any, merlin-point or merlin-env: the model's\n"
+    "configuration, where the weights come from, their number, and what one picture of 256x256\n"
+    "costs.\n\n"
+    "      --tensors    every tensor with its type and shape\n"
+    "      --json       as JSON\n"
+    "  -t, --threads N  how many threads work (default: one a processor)\n"
+    "  -q, --quiet      no other output than errors\n"
+    "  -h, --help       this text\n";
 
 /* Metadata that merlin-lab train writes beside the configuration. */
 static const char *const provenance[] = {"presentations",   "samples", "size",    "generator_version",

@@ -234,7 +234,7 @@ static status check(const merlin_export_params *p)
                     MERLIN_EXPORT_MOST_SIDE);
     if (p->maps & MERLIN_EXPORT_MATERIALX && p->normal_down)
         return fail(MERLIN_WRONG_USE, "MaterialX has normals whose green is up alone: material.mtlx cannot go with "
-                                      "normals whose green is down");
+                                      "normals whose green is down (leave one of the two out)");
     return OK;
 }
 
@@ -251,6 +251,18 @@ static status compute(export_job *j, int side)
     if (j->wanted & WITH_OCCLUSION) s = compute_occlusion(j->maps, side, &j->occlusion);
     if (s == OK && j->wanted & WITH_HEIGHT) s = compute_height(j);
     return s == OK ? fill_textures(j) : s;
+}
+
+/* Checks that nothing in the folder would be replaced by pictures of other kinds, or contradict them. */
+static status check_folder(const export_job *j, const char *folder)
+{
+    if (file_is_in(folder, "maps.exr"))
+        return fail(MERLIN_CANNOT_WRITE,
+                    "%s holds maps, whose pictures have names of an export's: choose another folder", folder);
+    if (j->normal_down && (j->wanted & MERLIN_EXPORT_NORMAL) && file_is_in(folder, "material.mtlx"))
+        return fail(MERLIN_CANNOT_WRITE, "%s has a material.mtlx, for normals whose green is up: choose another folder",
+                    folder);
+    return OK;
 }
 
 static status write_all(export_job *j, const char *folder, merlin_files *written)
@@ -279,7 +291,8 @@ merlin_status merlin_maps_export(const merlin_maps *maps, const merlin_export_pa
     if (s == OK) s = maps_check(maps);
     if (s != OK) return s;
     if (j.wanted & MERLIN_EXPORT_MATERIALX) j.wanted |= OF_MATERIALX;
-    s = compute(&j, how->side ? how->side : min_int(maps->crop.side, MERLIN_EXPORT_SIDE));
+    s = check_folder(&j, folder);
+    if (s == OK) s = compute(&j, how->side ? how->side : min_int(maps->crop.side, MERLIN_EXPORT_SIDE));
     if (s == OK) s = write_all(&j, folder, written);
     if (s == OK && facts) *facts = j.facts;
     job_free(&j);

@@ -169,8 +169,10 @@ static status run(const request *r, const char *asked)
 {
     char *path;
     staged_files written = {0};
-    status s = photo_find_model(asked, &path);
+    char *flash;
+    status s = photo_find_models(asked, &path, &flash);
     if (s != OK) return s;
+    free(flash);
     export_job job = {.asked = r, .weights = path};
     s = check_named("weights file", path);
     if (s == OK) s = model_load(path, &job.config, &job.params);
@@ -190,6 +192,7 @@ int cmd_export(int argc, char **argv)
     request r = {0};
     if (parse(&argc, &argv, &r) != OK) return cli_usage("export", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
+    cli_catch_interrupts();
     status s = run(&r, argc ? argv[0] : NULL);
     return s == OK ? 0 : cli_fail("export", s);
 }
