@@ -1,16 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* merlin_surface_write: a folder with all files of a captured surface, or none. */
-#include <pthread.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/api_needs.h"
 #include "base/file.h"
-#include "base/parallel.h"
-#include "base/staging.h"
-#include "base/watch.h"
+#include "base/folder_batch.h"
 #include "estimate/files/map_png.h"
 #include "estimate/files/maps_files.h"
 #include "estimate/surface/crop.h"
@@ -31,8 +27,9 @@ typedef struct job {
 
 /* ---- one file each ---- */
 
-static status write_exr(const job *j, const char *path)
+static status write_exr(const void *context, const char *path)
 {
+    const job *j = context;
     const exr_channel channels[] = {
         {"albedo.R", j->albedo.data, 3, false},
         {"albedo.G", j->albedo.data + 1, 3, false},
@@ -51,23 +48,27 @@ static status write_exr(const job *j, const char *path)
                      sizeof channels / sizeof channels[0], attributes, sizeof attributes / sizeof attributes[0]);
 }
 
-static status write_normal(const job *j, const char *path)
+static status write_normal(const void *context, const char *path)
 {
+    const job *j = context;
     return map_write_normals(path, &j->surface->normal, &j->surface->mask);
 }
 
-static status write_albedo(const job *j, const char *path)
+static status write_albedo(const void *context, const char *path)
 {
+    const job *j = context;
     return img_write_png(path, &j->albedo, IMG_SRGB8);
 }
 
-static status write_mask(const job *j, const char *path)
+static status write_mask(const void *context, const char *path)
 {
+    const job *j = context;
     return img_write_png(path, &j->surface->mask, IMG_LINEAR8);
 }
 
-static status write_depth(const job *j, const char *path)
+static status write_depth(const void *context, const char *path)
 {
+    const job *j = context;
     return map_write_depths(path, &j->surface->depth, &j->surface->mask);
 }
 
@@ -79,8 +80,9 @@ static status error_picture(const job *j, img *out)
     return s;
 }
 
-static status write_error(const job *j, const char *path)
+static status write_error(const void *context, const char *path)
 {
+    const job *j = context;
     img shown = {0};
     status s = error_picture(j, &shown);
     if (s == OK) s = img_write_png(path, &shown, IMG_LINEAR8);
@@ -99,8 +101,9 @@ static status crop_tile(crop_square c, img *tile)
     return OK;
 }
 
-static status write_overview(const job *j, const char *path)
+static status write_overview(const void *context, const char *path)
 {
+    const job *j = context;
     img tile[TILES] = {0};
     crop_square c;
     status s = crop_around(&j->surface->mask, &c);
@@ -128,8 +131,9 @@ static status write_overview(const job *j, const char *path)
     return s;
 }
 
-static status write_report(const job *j, const char *path)
+static status write_report(const void *context, const char *path)
 {
+    const job *j = context;
     char *text;
     status s = merlin_surface_report(j->surface, j->input, &text);
     if (s == OK) s = file_write(path, text, strlen(text));
@@ -139,57 +143,13 @@ static status write_report(const job *j, const char *path)
 
 /* ---- all of them ---- */
 
-typedef struct output {
-    const char *name;
-    status (*write)(const job *j, const char *path);
-} output;
-
 /* Output files, the slowest first, so that two processors finish together. */
-static const output outputs[] = {
+static const folder_file outputs[] = {
     {"maps.exr", write_exr},      {"overview.png", write_overview}, {"normal.png", write_normal},
     {"albedo.png", write_albedo}, {"depth.png", write_depth},       {"error.png", write_error},
     {"mask.png", write_mask},     {"report.json", write_report},
 };
 enum { OUTPUTS = sizeof outputs / sizeof outputs[0] };
-
-typedef struct batch {
-    job job;
-    pthread_t owner; /* thread that reports progress */
-    atomic_int done;
-    staging *staging; /* NULL: into `folder` itself */
-    const char *folder;
-    watch watch;
-} batch;
-
-static status write_one(void *context, size_t i)
-{
-    batch *b = context;
-    char path[PATH_MAX];
-    if (watch_stops(&b->watch)) return fail(MERLIN_STOPPED, "stopped");
-    if (b->staging)
-        staging_path(b->staging, outputs[i].name, path);
-    else
-        snprintf(path, sizeof path, "%s/%s", b->folder, outputs[i].name);
-    status s = outputs[i].write(&b->job, path);
-    int done = atomic_fetch_add(&b->done, 1) + 1;
-    if (pthread_equal(b->owner, pthread_self())) watch_tell(&b->watch, "writing", (double)done / OUTPUTS);
-    return s;
-}
-
-static status write_all(batch *b, bool in_place)
-{
-    const size_t length = strlen(b->folder);
-    status s = OK;
-    if (!in_place)
-        s = staging_begin(b->folder, NULL, &b->staging);
-    else if (length + 1 + NAME_MAX >= PATH_MAX)
-        s = fail(MERLIN_CANNOT_WRITE, "a path of %zu bytes is too long", length);
-    if (s != OK) return s;
-    s = parallel_try(OUTPUTS, write_one, b);
-    if (s == OK && watch_stops(&b->watch)) s = fail(MERLIN_STOPPED, "stopped");
-    if (in_place) return s;
-    return s == OK ? staging_commit(b->staging, NULL) : staging_abort(b->staging, s);
-}
 
 merlin_status merlin_surface_write(const merlin_surface *surface, const char *input, const merlin_write_params *params,
                                    const char *folder)
@@ -199,13 +159,17 @@ merlin_status merlin_surface_write(const merlin_surface *surface, const char *in
     status s = api_needs(__func__, surface && folder);
     if (s == OK) s = pst_surface_check(surface);
     if (s != OK) return s;
-    batch b = {.job = {.surface = surface, .input = input},
-               .owner = pthread_self(),
-               .folder = folder,
-               .watch = {by->progress, by->progress_context, by->stop}};
-    watch_tell(&b.watch, "writing", 0);
-    s = surface_albedo(surface, &b.job.albedo);
-    if (s == OK) s = write_all(&b, by->in_place);
-    img_free(&b.job.albedo);
+    job j = {.surface = surface, .input = input};
+    const folder_batch files = {.files = outputs,
+                                .count = OUTPUTS,
+                                .job = &j,
+                                .folder = folder,
+                                .in_place = by->in_place,
+                                .watch = {by->progress, by->progress_context, by->stop},
+                                .steps = OUTPUTS};
+    watch_tell(&files.watch, "writing", 0);
+    s = surface_albedo(surface, &j.albedo);
+    if (s == OK) s = folder_batch_write(&files);
+    img_free(&j.albedo);
     return s;
 }
