@@ -214,6 +214,20 @@ void file_discard(char *temporary)
     forget(temporary);
 }
 
+status file_commit_all(status s, char *const *aside, const char *const *paths, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (!aside[i]) continue;
+        if (s == OK) {
+            s = file_commit(aside[i], paths[i]);
+        } else {
+            s = fail_shown(s, aside[i], paths[i]);
+            file_discard(aside[i]);
+        }
+    }
+    return s;
+}
+
 status file_commit(char *temporary, const char *path)
 {
     status s = OK;

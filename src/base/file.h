@@ -60,6 +60,9 @@ status file_print(const char *path, file_printer *print, const void *context);
 status file_temporary(const char *path, char **temporary);
 status file_commit(char *temporary, const char *path);
 void file_discard(char *temporary);
+/* Ends the writing of several such files: commits all where s is OK, else discards them, puts the paths in the place of
+ * the temporary names in the message, and returns s. Entries of aside that are NULL are passed over. */
+status file_commit_all(status s, char *const *aside, const char *const *paths, size_t count);
 
 /* Checks that a file can be written there, by creating one beside it: called before long work whose result goes there.
  */

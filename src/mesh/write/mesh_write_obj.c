@@ -100,15 +100,7 @@ status mesh_write_obj(const char *path, const merlin_mesh *m)
     char *material = with_ending(path, ".mtl"), *texture = with_ending(path, ".png"), *aside[FILES] = {NULL};
     const char *const paths[FILES] = {texture, material, path};
     status s = material && texture ? write_aside(paths, aside, m) : fail(MERLIN_NO_MEMORY, "no memory for file names");
-    for (int i = 0; i < FILES; i++) {
-        if (!aside[i]) continue;
-        if (s == OK) {
-            s = file_commit(aside[i], paths[i]);
-        } else {
-            s = fail_shown(s, aside[i], paths[i]);
-            file_discard(aside[i]);
-        }
-    }
+    s = file_commit_all(s, aside, paths, FILES);
     free(material);
     free(texture);
     return s;

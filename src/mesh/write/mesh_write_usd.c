@@ -218,15 +218,7 @@ status mesh_write_usda(const char *path, const merlin_mesh *m)
         paths[i] = picture[i];
     }
     if (s == OK) s = write_aside(paths, aside, m);
-    for (int i = 0; i < FILES; i++) {
-        if (!aside[i]) continue;
-        if (s == OK) {
-            s = file_commit(aside[i], paths[i]);
-        } else {
-            s = fail_shown(s, aside[i], paths[i]);
-            file_discard(aside[i]);
-        }
-    }
+    s = file_commit_all(s, aside, paths, FILES);
     for (int i = 0; i < PICTURES; i++)
         free(picture[i]);
     return s;
