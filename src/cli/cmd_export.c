@@ -8,6 +8,7 @@
 #include "base/progress.h"
 #include "base/text/report.h"
 #include "cli/commands.h"
+#include "cli/maps_folder.h"
 #include "cli/written.h"
 #include "command/cli.h"
 #include "command/json_line.h"
@@ -106,21 +107,7 @@ static status parse(int *argc, char ***argv, request *r)
     };
     status s = cli_read_options(argc, argv, options);
     if (s != OK || r->help) return s;
-    if (*argc == 0) return fail(MERLIN_WRONG_USE, "no folder of maps given");
-    if (*argc > 1) return fail(MERLIN_WRONG_USE, "one folder at a time, not also %s", (*argv)[1]);
-    r->input = photo_without_maps_name((*argv)[0]);
-    return OK;
-}
-
-static status check_folders(const request *r, const char *output)
-{
-    if (!file_exists(r->input)) return fail(MERLIN_BAD_INPUT, "there is no folder %s", r->input);
-    if (!file_is_folder(r->input))
-        return fail(MERLIN_BAD_INPUT, "%s is no folder of maps: merlin estimate %s makes one", r->input, r->input);
-    if (file_is_same(r->input, output))
-        return fail(MERLIN_CANNOT_WRITE, "%s holds the maps, whose pictures have the same names: choose another folder",
-                    output);
-    return OK;
+    return maps_folder_take(*argc, *argv, &r->input);
 }
 
 static status announce(const request *r, const char *output, const merlin_export_facts *facts,
@@ -151,7 +138,7 @@ static status run(const request *r)
     merlin_files written = {0};
     char *output = photo_output_inside(r->input, "export", r->output);
     if (!output) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
-    status s = check_folders(r, output);
+    status s = maps_folder_check(r->input, "makes one");
     if (s == OK) s = merlin_maps_read(r->input, &maps);
     if (s == OK) s = merlin_maps_export(&maps, &r->params, output, &facts, &written);
     if (s == OK) s = announce(r, output, &facts, &written, clock_seconds() - began);

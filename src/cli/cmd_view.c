@@ -11,6 +11,7 @@
 #include "base/warnings.h"
 #include "cli/commands.h"
 #include "cli/expect.h"
+#include "cli/maps_folder.h"
 #include "cli/page.h"
 #include "cli/stage_bar.h"
 #include "cli/written.h"
@@ -58,18 +59,8 @@ static status parse(int *argc, char ***argv, request *r)
     };
     status s = cli_read_options(argc, argv, options);
     if (s != OK || r->help) return s;
-    if (*argc == 0) return fail(MERLIN_WRONG_USE, "no folder of maps given");
-    if (*argc > 1) return fail(MERLIN_WRONG_USE, "one folder at a time, not also %s", (*argv)[1]);
-    r->input = photo_without_maps_name((*argv)[0]);
-    return r->output ? check_output_name(r->output) : OK;
-}
-
-static status check_input(const request *r)
-{
-    if (!file_exists(r->input)) return fail(MERLIN_BAD_INPUT, "there is no folder %s", r->input);
-    if (file_is_folder(r->input)) return OK;
-    return fail(MERLIN_BAD_INPUT, "%s is no folder of maps: merlin estimate %s --html makes one, with its page",
-                r->input, r->input);
+    s = maps_folder_take(*argc, *argv, &r->input);
+    return s == OK && r->output ? check_output_name(r->output) : s;
 }
 
 /* ---- report ---- */
@@ -143,7 +134,7 @@ static status view(const request *r, const char *folder, const char *file)
 
 static status run(const request *r)
 {
-    status s = check_input(r);
+    status s = maps_folder_check(r->input, "--html makes one, with its page");
     if (s != OK) return s;
     char *folder = r->output ? file_folder_of(r->output) : strdup(r->input);
     s = folder ? view(r, folder, r->output ? file_name_of(r->output) : PAGE_FILE)

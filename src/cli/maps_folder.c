@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: MIT */
+#include "cli/maps_folder.h"
+
+#include "base/file.h"
+#include "command/photos.h"
+
+status maps_folder_take(int argc, char *const *argv, const char **input)
+{
+    if (argc == 0) return fail(MERLIN_WRONG_USE, "no folder of maps given");
+    if (argc > 1) return fail(MERLIN_WRONG_USE, "one folder at a time, not also %s", argv[1]);
+    *input = photo_without_maps_name(argv[0]);
+    return OK;
+}
+
+status maps_folder_check(const char *input, const char *remedy)
+{
+    if (!file_exists(input)) return fail(MERLIN_BAD_INPUT, "there is no folder %s", input);
+    if (file_is_folder(input)) return OK;
+    return fail(MERLIN_BAD_INPUT, "%s is no folder of maps: merlin estimate %s %s", input, input, remedy);
+}
