@@ -16,6 +16,7 @@
 #include "export/materialx.h"
 #include "export/occlusion.h"
 #include "image/exr/exr.h"
+#include "image/resize.h"
 #include "image/write/write.h"
 #include "merlin/export.h"
 
@@ -35,9 +36,10 @@ typedef struct export_job {
     unsigned wanted;
     bool normal_down;
     merlin_export_facts facts;
-    surface of;    /* the square; `filled`: its maps are continued outside the object */
-    img occlusion; /* 1 channel; no data: not requested */
-    img height;    /* 1 channel, in widths of the square; likewise */
+    surface of;     /* the square; `filled`: its maps are continued outside the object */
+    img occlusion;  /* 1 channel; no data: not requested */
+    img height;     /* 1 channel, in widths of the square; no data: not wanted */
+    float farthest; /* depth of the object's lowest point */
     staging *files;
     cJSON *list; /* names of the files */
 } export_job;
@@ -53,55 +55,49 @@ static void job_free(export_job *j)
 
 static status compute_occlusion(const merlin_maps *maps, int side, img *out)
 {
-    surface coarse = {0}, fine = {0};
-    img small = {0}, cover = {0};
+    surface fine = {0}, coarse = {0};
+    img small = {0};
     const int fine_side = min_int(side, OCCLUSION_SIDE);
-    status s = maps_surface(maps, min_int(fine_side, HORIZON_SIDE), &coarse);
-    if (s == OK) s = maps_surface(maps, fine_side, &fine);
-    if (s == OK) s = occlusion_of(&coarse, &fine, &small);
+    const bool is_coarse = fine_side <= HORIZON_SIDE;
+    status s = maps_surface(maps, fine_side, &fine);
+    if (s == OK && !is_coarse) s = maps_surface(maps, HORIZON_SIDE, &coarse);
+    if (s == OK) s = occlusion_of(is_coarse ? &fine : &coarse, &fine, &small);
     if (s == OK && fine_side == side) {
         *out = small;
         small = (img){0};
     } else if (s == OK) {
-        s = img_new(&cover, side, side, 1);
-        for (size_t i = 0; s == OK && i < img_value_count(&cover); i++)
-            cover.data[i] = 1;
-        if (s == OK) s = fill_outside(&small, &fine.mask);
-        if (s == OK) s = surface_resize_image(&small, &fine.mask, &cover, out);
+        s = fill_outside(&small, &fine.mask);
+        if (s == OK) s = img_resize(&small, side, side, out);
     }
     surface_free(&coarse);
     surface_free(&fine);
     img_free(&small);
-    img_free(&cover);
     return s;
 }
 
 static void measure(export_job *j)
 {
-    float nearest = INFINITY, farthest = -INFINITY;
+    float nearest = INFINITY;
     double sum = 0, count = 0;
+    j->farthest = -INFINITY;
     for (size_t i = 0; i < img_value_count(&j->of.depth); i++) {
         if (j->of.mask.data[i] < 0.5f) continue;
         nearest = fminf(nearest, j->of.depth.data[i]);
-        farthest = fmaxf(farthest, j->of.depth.data[i]);
+        j->farthest = fmaxf(j->farthest, j->of.depth.data[i]);
         sum += (double)j->of.depth.data[i];
         count++;
     }
     if (count == 0) return;
     j->facts.width = (float)(2 * (double)camera_tangent(surface_lens(&j->of).fov) * sum / count);
-    j->facts.relief = (farthest - nearest) / j->facts.width;
+    j->facts.relief = (j->farthest - nearest) / j->facts.width;
 }
 
 static status compute_height(export_job *j)
 {
     status s = img_copy(&j->height, &j->of.depth);
-    if (s != OK) return s;
-    float farthest = -INFINITY;
-    for (size_t i = 0; i < img_value_count(&j->height); i++)
-        if (j->of.mask.data[i] >= 0.5f) farthest = fmaxf(farthest, j->height.data[i]);
-    for (size_t i = 0; i < img_value_count(&j->height); i++)
-        j->height.data[i] = j->of.mask.data[i] >= 0.5f ? (farthest - j->height.data[i]) / j->facts.width : 0;
-    return OK;
+    for (size_t i = 0; s == OK && i < img_value_count(&j->height); i++)
+        j->height.data[i] = j->of.mask.data[i] >= 0.5f ? (j->farthest - j->height.data[i]) / j->facts.width : 0;
+    return s;
 }
 
 static status fill_textures(export_job *j)
