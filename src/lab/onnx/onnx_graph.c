@@ -26,15 +26,22 @@ const char *onnx_value_name(const nn_node *x, char name[ONNX_NAME])
     return name;
 }
 
+/* Composes the name of what belongs to a node alone, such as "v7.scale", and returns it. */
+static const char *step_name(const nn_node *x, const char *what, char whole[ONNX_NAME + 16])
+{
+    char name[ONNX_NAME];
+    snprintf(whole, ONNX_NAME + 16, "%s.%s", onnx_value_name(x, name), what);
+    return whole;
+}
+
 /* ---- constants ---- */
 
 /* Adds a constant as a node's next input: "v7.scale". */
 static void put_constant(onnx_graph *g, protobuf *node, const nn_node *x, const char *what, const onnx_tensor *values)
 {
-    char name[ONNX_NAME], whole[ONNX_NAME + 16];
+    char whole[ONNX_NAME + 16];
     onnx_tensor named = *values;
-    snprintf(whole, sizeof whole, "%s.%s", onnx_value_name(x, name), what);
-    named.name = whole;
+    named.name = step_name(x, what, whole);
     onnx_put_tensor(&g->message, &named);
     onnx_put_input(node, whole);
 }
@@ -104,18 +111,10 @@ static protobuf begin(const nn_node *x, const char *operation)
 /* Begins an intermediate node of x, whose value is called "v7.what", with one input, from. */
 static protobuf begin_step(const nn_node *x, const char *operation, const char *what, const char *from)
 {
-    char name[ONNX_NAME], whole[ONNX_NAME + 16];
-    snprintf(whole, sizeof whole, "%s.%s", onnx_value_name(x, name), what);
-    protobuf node = onnx_node(operation, whole);
+    char whole[ONNX_NAME + 16];
+    protobuf node = onnx_node(operation, step_name(x, what, whole));
     onnx_put_input(&node, from);
     return node;
-}
-
-static const char *step_name(const nn_node *x, const char *what, char whole[ONNX_NAME + 16])
-{
-    char name[ONNX_NAME];
-    snprintf(whole, ONNX_NAME + 16, "%s.%s", onnx_value_name(x, name), what);
-    return whole;
 }
 
 static void put_plain(onnx_graph *g, const nn_node *x)
@@ -128,14 +127,17 @@ static void put_plain(onnx_graph *g, const nn_node *x)
     add(g, &node);
 }
 
+/* Finds a node's parameters; returns false, and notes the error, if they are another network's. */
+static bool find_params(onnx_graph *g, const nn_node *x, node_params *of)
+{
+    g->error = params_of_node(g->params, x, of);
+    return g->error == OK;
+}
+
 static void put_conv(onnx_graph *g, const nn_node *x)
 {
     node_params of;
-    status s = params_of_node(g->params, x, &of);
-    if (s != OK) {
-        g->error = s;
-        return;
-    }
+    if (!find_params(g, x, &of)) return;
     protobuf node = begin(x, "Conv");
     put_parameter(g, &node, of.weight);
     if (of.bias) put_parameter(g, &node, of.bias);
@@ -150,11 +152,7 @@ static void put_conv(onnx_graph *g, const nn_node *x)
 static void put_norm(onnx_graph *g, const nn_node *x)
 {
     node_params of;
-    status s = params_of_node(g->params, x, &of);
-    if (s != OK) {
-        g->error = s;
-        return;
-    }
+    if (!find_params(g, x, &of)) return;
     protobuf node = begin(x, "BatchNormalization");
     put_parameter(g, &node, of.weight);
     put_parameter(g, &node, of.bias);
