@@ -6,7 +6,7 @@
 #include "base/status.h"
 #include "merlin/image.h"
 
-/* Makes a copy of at most `side` pixels a side, each the mean of a block. */
+/* Makes a copy of at most `side` pixels a side, by merlin_image_resize. */
 status resized_reduce(const merlin_image *image, int side, merlin_image *out);
 /* Enlarges a picture of the same aspect ratio, within rounding, to another's size by linear interpolation, in place;
  * one of that size is unchanged. MERLIN_BAD_INPUT if the ratios differ, or it is larger. */
