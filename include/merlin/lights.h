@@ -24,7 +24,7 @@ extern "C" {
 typedef struct merlin_lamp {
     float at[3];    /* position; for a distant lamp the direction toward it, of any length */
     int distant;    /* 1: distant, with parallel light, everywhere as bright as that of a near lamp at distance 1 */
-    float power[3]; /* of each channel, linear: 1 is the flash's (5.95) */
+    float power[3]; /* power in each channel, linear: 1 is the flash's (5.95) */
 } merlin_lamp;
 
 /* Return a lamp of power 1, 1, 1 at a position, and a distant one. */

@@ -42,8 +42,9 @@ enum {
 /* All zeros is the usual case. */
 typedef struct merlin_rti_params {
     merlin_rti_basis basis;
-    int planes;  /* of MERLIN_RTI_RBF: a multiple of 3 up to MERLIN_RTI_MOST_PLANES; 0: MERLIN_RTI_PLANES */
-    int quality; /* of the planes' JPEG files, 1 to 100; 0: MERLIN_RTI_QUALITY */
+    int planes;  /* number of planes of MERLIN_RTI_RBF: a multiple of 3 up to MERLIN_RTI_MOST_PLANES; 0:
+                    MERLIN_RTI_PLANES */
+    int quality; /* quality of the planes' JPEG files, 1 to 100; 0: MERLIN_RTI_QUALITY */
 } merlin_rti_params;
 
 typedef struct merlin_rti merlin_rti;

@@ -14,7 +14,7 @@ typedef struct rti_components {
     const merlin_rti *rti;
     int length, planes;                  /* 3 values a picture */
     uint8_t *codes;                      /* planes × length: a vector's value is (code - RTI_BASIS_ZERO) / range */
-    float range[MERLIN_RTI_MOST_PLANES]; /* of each vector */
+    float range[MERLIN_RTI_MOST_PLANES]; /* range of each vector */
     float *projection;                   /* length × planes: of pixels onto the vectors as they are coded */
 } rti_components;
 

@@ -8,7 +8,7 @@
 
 typedef struct rti_fit {
     const merlin_rti *rti;
-    float inverse[RTI_MOST_TERMS * RTI_MOST_TERMS]; /* of the products' sums */
+    float inverse[RTI_MOST_TERMS * RTI_MOST_TERMS]; /* inverse of the products' sums */
 } rti_fit;
 
 /* Prepares the fit; the object that values refers to must outlive them. The planes are, of LRGB, a colour and the

@@ -8,7 +8,7 @@
 #include "base/json/json_put.h"
 #include "rti/rti_write.h"
 
-/* To as many digits as a float has. */
+/* Appends a number with as many digits as a float has. */
 static void append_float(cJSON *array, double number)
 {
     const double digits = number == 0 ? 1 : pow(10, 7 - ceil(log10(fabs(number))));

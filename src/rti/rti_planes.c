@@ -45,7 +45,7 @@ static status find_range(void *context, size_t y)
 static void set_plane(rti_planes *p, int plane, range r)
 {
     const int zero = (int)lrintf(255 * -r.low / max_of(r.high - r.low, 1e-9f));
-    float step = 1e-9f; /* of two codes */
+    float step = 1e-9f; /* difference of two codes */
     if (zero > 0) step = max_of(step, -r.low / (float)zero);
     if (zero < 255) step = max_of(step, r.high / (float)(255 - zero));
     p->zero[plane] = zero;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What is kept of the pictures that were added: the sums of least squares' normal equations, or for RBF the pictures.
+/* State after some pictures: the sums of least squares' normal equations, or for RBF the pictures.
  */
 #ifndef MERLIN_RTI_RTI_SUMS_H
 #define MERLIN_RTI_RTI_SUMS_H
@@ -14,10 +14,10 @@ struct merlin_rti {
     int width, height, terms;
     merlin_rti_params how; /* nothing in it is 0 for the usual */
     int count;             /* pictures so far */
-    float *direction;      /* of each, 3 values, unit */
-    uint8_t **pictures;    /* of RBF, each height × width × 3, sRGB; else NULL */
+    float *direction;      /* direction of each picture's light, 3 values, unit */
+    uint8_t **pictures;    /* pictures of RBF, each height × width × 3, sRGB; else NULL */
     float *sums;   /* height × width × terms × 3: of the pictures' values, in [0, 1], times each term; or NULL */
-    uint8_t *peak; /* of LRGB, height × width: the largest of all values; else NULL */
+    uint8_t *peak; /* largest value of each pixel for LRGB, height × width; else NULL */
     double gram[RTI_MOST_TERMS * RTI_MOST_TERMS]; /* sums of the products of two terms */
 };
 

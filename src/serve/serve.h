@@ -25,11 +25,11 @@ typedef struct serve_params {
     const char *names[GUARD_MOST_NAMES];  /* further ones by which clients call it; ended by NULL */
     const char *token;                    /* NULL: none, with `host` one is made up */
     int port;                             /* 0: one that is free */
-    int keep_minutes;                     /* for which results stay */
+    int keep_minutes;                     /* minutes for which results stay */
     int most_waiting;                     /* jobs in the queue */
     int most_kept;                        /* results */
-    int upload_megabytes, kept_megabytes; /* of a request, of all results */
-    int megapixels;                       /* of a photograph */
+    int upload_megabytes, kept_megabytes; /* size of a request, and of all results */
+    int megapixels;                       /* size of a photograph */
 } serve_params;
 
 /* Binds the port and starts to answer. */

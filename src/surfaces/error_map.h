@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What a surface's error map shows. */
+/* The error map of a surface: its name and its scale. */
 #ifndef MERLIN_SURFACES_ERROR_MAP_H
 #define MERLIN_SURFACES_ERROR_MAP_H
 

@@ -70,7 +70,7 @@ static void middle(const char *folder, const char *name, float out[3])
     free(path);
 }
 
-/* What a PNG's codes, which say nothing of a curve, were before merlin_image_read took them for sRGB. */
+/* Returns a PNG's code, which says nothing of a curve, before merlin_image_read took it for sRGB. */
 static float code_of(float linear)
 {
     return linear <= 0.0031308f ? 12.92f * linear : 1.055f * powf(linear, 1 / 2.4f) - 0.055f;

@@ -17,7 +17,7 @@ typedef struct statistics {
     double mean, spread, lowest;
 } statistics;
 
-/* Of pixels whose normals are not nearly at right angles to the line of sight. */
+/* Measures pixels whose normals are not nearly at right angles to the line of sight. */
 static statistics over_object(const surface *s, const img *occlusion)
 {
     double sum = 0, square = 0, count = 0, lowest = 1;
@@ -67,7 +67,7 @@ static void a_ball_is_open_and_its_surroundings_are_one(void **state)
     surface_free(&s);
 }
 
-/* From inside a sphere every piece of it is seen under the same factor, its share of the sphere's area: all points of a
+/* Every piece of a sphere is seen from inside under the same factor, its share of the sphere's area: all points of a
  * bowl that is cut from a sphere see the missing part. */
 static void all_of_a_bowl_sees_the_missing_part_of_its_sphere(void **state)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What is in a weights file, by the public functions. */
+/* Content of a weights file, by the public functions. */
 #include <string.h>
 
 #include "merlin/merlin.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What this project makes of a network's inputs, and how long that takes, to be held against another engine that has
- * the same network from merlin-lab export (tools/compare-onnxruntime).
+/* Writes what this project makes of a network's inputs, or how long that takes, to be held against another engine that
+ * has the same network from merlin-lab export (tools/compare-onnxruntime).
  *
  *     network_values WEIGHTS maps|bounces|relight SIDE FOLDER
  *

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What clients send, and how it is read. */
+/* Forms that clients send, and how they are read. */
 #include <stdio.h>
 #include <string.h>
 

@@ -7,7 +7,7 @@
 
 static const char *const names[] = {
     [MERLIN_RTI_PTM] = "ptm", [MERLIN_RTI_LRGB] = "lrgb", [MERLIN_RTI_HSH] = "hsh", [MERLIN_RTI_RBF] = "rbf"};
-/* As merlin_rti_write wants them, which is known before long work. */
+/* Least numbers of pictures, those that merlin_rti_write checks, known before long work. */
 static const int fewest[] = {[MERLIN_RTI_PTM] = 6, [MERLIN_RTI_LRGB] = 6, [MERLIN_RTI_HSH] = 9, [MERLIN_RTI_RBF] = 4};
 
 enum { KINDS = sizeof names / sizeof names[0] };

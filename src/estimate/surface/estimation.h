@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What a network estimates from a photograph. */
+/* Result of a network for a photograph. */
 #ifndef MERLIN_ESTIMATE_SURFACE_ESTIMATION_H
 #define MERLIN_ESTIMATE_SURFACE_ESTIMATION_H
 

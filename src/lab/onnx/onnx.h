@@ -15,7 +15,7 @@
 
 typedef struct onnx_options {
     const char *name;                 /* the graph's */
-    const char *about;                /* what the model is for, for people; may be NULL */
+    const char *about;                /* description of the model for people; may be NULL */
     int size;                         /* pixels a side of the pictures, one at a time; 0: any number of any multiple of
                                        * MODEL_SIZE_MULTIPLE, whose dimensions are named "batch", "height", "width" */
     const char *const (*metadata)[2]; /* pairs of key and value that the file carries, ended by a NULL key; may be

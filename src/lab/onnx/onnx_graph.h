@@ -11,7 +11,7 @@ typedef struct onnx_graph {
     protobuf message;
     const nn_graph *source;
     nn_params *params;
-    int size;      /* of onnx_options */
+    int size;      /* size of onnx_options */
     bool *written; /* one a parameter: it is a constant of the graph already */
     status error;  /* the first one */
 } onnx_graph;

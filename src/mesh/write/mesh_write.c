@@ -11,7 +11,7 @@
 
 enum { MOST_FILES = 4 };
 
-/* What a mesh must have for a file of a format. */
+/* Condition on a mesh for one of a format's files. */
 typedef enum need { NEEDS_NOTHING, NEEDS_ALBEDO, NEEDS_FACE_NORMALS, NEEDS_ROUGHNESS } need;
 
 typedef struct format {

@@ -12,7 +12,7 @@
 
 /* State of a request until its body has arrived. */
 typedef struct request {
-    const work_kind *kind; /* of a POST; NULL for others, whose body is not read */
+    const work_kind *kind; /* kind of a POST; NULL for others, whose body is not read */
     upload *upload;        /* NULL: it will be refused */
     uint64_t ignored;      /* bytes of a body that is not read */
     unsigned code;         /* status of a refusal after its body; 0: none */

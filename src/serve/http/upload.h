@@ -13,9 +13,9 @@
 #include "serve/jobs/form.h"
 
 typedef struct upload_limits {
-    uint64_t bytes; /* of a request */
-    size_t files;   /* of a request */
-    double seconds; /* allowed for it */
+    uint64_t bytes; /* most bytes of a request */
+    size_t files;   /* most files in it */
+    double seconds; /* most seconds that it may take */
 } upload_limits;
 
 typedef struct upload upload;

@@ -16,7 +16,7 @@ typedef struct archive {
     unsigned char *block;
 } archive;
 
-/* What is said of a file in front of it and in the directory. */
+/* Facts of a file that stand in front of it and in the directory. */
 typedef struct entry {
     uint32_t crc, size, at;
 } entry;

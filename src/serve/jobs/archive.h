@@ -9,8 +9,8 @@
 #include "base/status.h"
 
 typedef struct archive_file {
-    const char *name; /* in the archive */
-    int descriptor;   /* to read it from its beginning */
+    const char *name; /* name in the archive */
+    int descriptor;   /* descriptor, read from its beginning */
     uint64_t bytes;
 } archive_file;
 

@@ -19,7 +19,7 @@ struct jobs {
     pthread_cond_t more;
     pthread_t worker;
     bool running, closing;
-    job **at; /* in the order of their arrival */
+    job **at; /* jobs in the order of their arrival */
     size_t count, room;
 };
 

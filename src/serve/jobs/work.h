@@ -18,8 +18,8 @@
 
 /* Limits of all work of a server. */
 typedef struct work_limits {
-    double megapixels; /* of a photograph, and of one picture of a capture */
-    int pictures;      /* of a capture, and lights of a relighting */
+    double megapixels; /* size of a photograph, and of one picture of a capture */
+    int pictures;      /* number of a capture's pictures, and of a relighting's lights */
 } work_limits;
 
 typedef struct work_context {
@@ -41,7 +41,7 @@ typedef struct work_stage {
 
 typedef struct work_kind {
     const char *name;
-    const work_stage *stages; /* in their order, ended by one without a name */
+    const work_stage *stages; /* stages in their order, ended by one without a name */
     /* *request is malloc'ed and freed by free. MERLIN_WRONG_USE names the field. */
     status (*check)(const form *f, const work_limits *limits, void **request);
     status (*run)(const work_context *w, const void *request);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* From a photograph to maps: the files of merlin estimate, and the viewer's page. */
+/* Makes maps of a photograph: the files of merlin estimate, and the viewer's page. */
 #include <stdlib.h>
 #include <string.h>
 

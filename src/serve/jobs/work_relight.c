@@ -14,7 +14,7 @@ enum { MOST_LIGHTS = 64, LEAST_SIDE = 16, MOST_SIDE = 4096, FARTHEST = 1000 };
 #define MAPS "maps.exr"
 
 typedef struct relight_request {
-    merlin_params params; /* of a photograph */
+    merlin_params params; /* parameters for a photograph */
     bool photo;
     merlin_lamp lamps[MOST_LIGHTS];
     int lamp_count;

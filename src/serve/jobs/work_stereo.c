@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* From pictures of an object under many lights to its surface. */
+/* Makes a surface of pictures of an object under many lights, or of one photograph. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,7 +15,7 @@ static const char *const picture_endings[] = {".png",  ".jpg", ".jpeg", ".tif", 
                                               ".cr3",  ".nef", ".arw",  ".dng", ".raf",  ".rw2",  ".orf",  NULL};
 
 typedef struct stereo_request {
-    bool photo; /* of one photograph, which is relit */
+    bool photo; /* whether it is one photograph, which is relit */
     merlin_params photo_params;
     merlin_stereo_params params;
     int near_lights, unknown_lights, linear;

@@ -18,7 +18,7 @@ static const double alike = 0.08;
 static const float same_direction = 0.9994f;
 /* Sine of the elevation below which a light is not just at the horizon. */
 static const float behind = -0.05f;
-/* The same above which a near light is not just next to the camera. */
+/* Sine of the elevation above which a near light is not just next to the camera. */
 static const float behind_camera = 0.1f;
 /* Ratio of the lights' distance from the object to the object's from the camera from which on their units differ. */
 static const float another_unit = 30;

@@ -19,7 +19,8 @@ static const double plainly_less = 0.02, times_less = 2;
 /* Largest residual of a correct list beyond that of the best three lights, unless that is large itself. Measured: 0.003
  * to 0.12, at most 0.087 if it is more than twice that; in a random order 0.11 to 0.55. */
 static const double most_beyond = 0.1;
-/* The same for lights so near that the whole object does not receive the light of its middle: 0.16 at most. */
+/* Largest such residual for lights so near that the whole object does not receive the light of its middle: 0.16 at
+ * most. */
 static const double most_beyond_near = 0.25;
 /* Least gain of pst_light_turn: correct axes are better than others by 0.3 and more, wrong ones worse by as much, in
  * all but one of 70 rendered captures. */

@@ -17,8 +17,8 @@ static const double worth_second = 0.1;
 /* Shares of the prediction error that a lobe, or another width, must save; smaller ones count as chance. */
 static const double worth_freedom = 0.03, worth_width = 0.015;
 
-/* The same for a terminator: a rough matte surface saves 6 percent with one that it does not have, a raised black level
- * 70 with its own. */
+/* Share that a terminator must save: a rough matte surface saves 6 percent with one that it does not have, a raised
+ * black level 70 with its own. */
 static const double worth_dark = 0.3;
 
 /* Least number of lights: with fewer τ and the lobe's kind would be fitted to the shadows. */

@@ -11,7 +11,7 @@
  * accumulate along the jump before any pair is cut for good (graduated non-convexity, Blake & Zisserman 1987). It ends
  * where a tenth of a pixel still counts as noise, as real normals are not more consistent than that. */
 static const double FIRST_SHARPNESS = 2, LAST_SHARPNESS = 100, GROWTH = 1.08;
-/* The same if x has its jumps from the start, when the sharpness can grow faster. */
+/* First sharpness and its growth, which can be faster, if x has its jumps from the start. */
 static const double STEPPED_SHARPNESS = 10, STEPPED_GROWTH = 3;
 static const double TOLERANCE = 1e-6;
 static const float LEAST_WEIGHT = 1e-6f; /* keeps the system definite where both sides of a pair are cut */
