@@ -26,7 +26,8 @@ merlin_status merlin_model_open(const char *weights, merlin_model **out);
  * assumes a flash, or has another already. The weights are read when a photograph first needs them. */
 merlin_status merlin_model_add_flash(merlin_model *model, const char *weights);
 void merlin_model_close(merlin_model *model);
-/* Returns the first weights' name, valid while the model is open; "" for NULL. */
+/* Returns the first weights' name, valid while the model is open; "" for NULL. merlin_relighting_model names those that
+ * relight maps. */
 const char *merlin_model_name(const merlin_model *model);
 
 #ifdef __cplusplus

@@ -63,6 +63,12 @@ void merlin_relighter_free(merlin_relighter *relighter);
 /* Returns MERLIN_WRONG_USE if a way of relighting does not exist, or does not support such a lamp (NULL: none), alone
  * or in an environment, so that one can check before long work. */
 merlin_status merlin_relighting_check(merlin_relighting how, const merlin_lamp *lamp, int surroundings);
+/* Returns the name of the weights that estimate the bounces of these maps under lamps, or whose decoder relights them:
+ * of a model with a second one for flashes it may be either's. Valid while the model is open; "" for NULL. */
+const char *merlin_relighting_model(const merlin_model *model, const merlin_maps *maps, merlin_relighting how);
+/* Adds other_model to a list of warnings if these weights are not those that made the maps. */
+void merlin_relighting_warnings(const merlin_model *model, const merlin_maps *maps, merlin_relighting how,
+                                merlin_warnings *list);
 
 /* ---- a relighter's pictures ---- */
 

@@ -247,6 +247,8 @@ FUNCTIONS: Dict[str, Tuple[Any, List[Any]]] = {
     "object_free": (None, [_at(Object)]),
     "estimate_object": (c_int, [_handle, _at(Image), _at(Object), _at(Params), _at(Maps)]),
     "relight": (c_int, [_handle, _at(Maps), _light3, c_int, _at(Image)]),
+    "relighting_model": (c_char_p, [_handle, _at(Maps), c_int]),
+    "relighting_warnings": (None, [_handle, _at(Maps), c_int, _at(Warnings)]),
     "environment_read": (c_int, [c_char_p, c_float, c_float, _out]),
     "environment_free": (None, [_handle]),
     "relight_environment": (c_int, [_handle, _at(Maps), _handle, _light3, c_int, _at(Image)]),

@@ -333,14 +333,29 @@ status photo_find_model(const char *asked, char **path)
                 "no models/merlin-point.safetensors near the program: give --model or set MERLIN_MODEL");
 }
 
-status photo_find_models(const char *asked, char **path, char **flash)
+/* Tells whether the user chose the weights. */
+static bool is_chosen(const char *asked)
 {
     const char *environment = getenv("MERLIN_MODEL");
+    return asked || (environment && *environment);
+}
+
+status photo_find_models(const char *asked, char **path, char **flash)
+{
     *path = *flash = NULL;
-    if (asked || (environment && *environment)) return photo_find_model(asked, path);
+    if (is_chosen(asked)) return photo_find_model(asked, path);
     status s = find_shipped("merlin-any", path);
     if (s == OK && !*path) return photo_find_model(NULL, path);
     return s == OK ? find_shipped("merlin-point", flash) : s;
+}
+
+status photo_find_models_of(const merlin_maps *maps, const char *asked, char **path, char **flash)
+{
+    *path = *flash = NULL;
+    const bool of_pair = strcmp(maps->model, "merlin-any") == 0 || strcmp(maps->model, "merlin-point") == 0;
+    const bool is_name = !maps->captured && !of_pair && !strchr(maps->model, '/');
+    status s = is_name && !is_chosen(asked) ? find_shipped(maps->model, path) : OK;
+    return s == OK && !*path ? photo_find_models(asked, path, flash) : s;
 }
 
 status photo_open_models(const char *path, const char *flash, merlin_model **out)

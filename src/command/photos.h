@@ -50,6 +50,9 @@ status photo_find_model(const char *asked, char **path);
  * then *flash is merlin-point, for photographs that it considers lit by a flash alone; else *flash is NULL. Both are
  * malloc'ed. */
 status photo_find_models(const char *asked, char **path, char **flash);
+/* Finds the weights to relight maps with: the same, but by default those that made the maps, if it is other ones that
+ * ship. */
+status photo_find_models_of(const merlin_maps *maps, const char *asked, char **path, char **flash);
 
 /* Opens the result of photo_find_models; flash may be NULL. */
 status photo_open_models(const char *path, const char *flash, merlin_model **out);

@@ -35,8 +35,8 @@ status relit_new(merlin_model *model, const merlin_maps *maps, int side, int (*s
 {
     *out = (relit){0};
     relighter st;
-    network *n = model_network(model, maps, MERLIN_BY_BRDF_UNSHADOWED);
-    status s = relighter_new(n, maps, side, MERLIN_BY_BRDF_UNSHADOWED, &st);
+    network *n = model_network(model, maps, RELIT_BY);
+    status s = relighter_new(n, maps, side, RELIT_BY, &st);
     if (s != OK) return s;
     st.white = NEAR_CAPTURE_WHITE;
     s = relight_all(n, &st, stop, &out->capture);

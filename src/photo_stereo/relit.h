@@ -15,6 +15,9 @@
 
 enum { RELIT_LIGHTS = 50 };
 
+/* The way of relighting. */
+#define RELIT_BY MERLIN_BY_BRDF_UNSHADOWED
+
 typedef struct relit {
     merlin_capture capture; /* RELIT_LIGHTS pictures of the maps' crop; its camera.distance is the maps' mean depth */
     surface maps;           /* maps from which they were rendered, of the same size */

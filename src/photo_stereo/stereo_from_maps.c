@@ -98,13 +98,12 @@ static void average_all(const work *w, merlin_surface *out)
     r->angle = angle / (double)r->pixels;
 }
 
-static status surface_new_from(const work *w, const merlin_model *model, merlin_surface *out)
+static status surface_new_from(const work *w, merlin_surface *out)
 {
     const int side = w->relit.capture.width;
     *out = (merlin_surface){.camera = w->relit.capture.camera,
                             .keep_edges = w->params->keep_edges != 0,
                             .relit = {RELIT_LIGHTS, SUBSETS, SUBSET_PICTURES, .pixels = 0}};
-    snprintf(out->relit.model, sizeof out->relit.model, "%s", merlin_model_name(model));
     status s = img_copy(&out->mask, &w->relit.capture.mask);
     if (s == OK) s = img_new(&out->normal, side, side, 3);
     /* the pictures were rendered from it: a solver can only blur it with highlights */
@@ -126,7 +125,7 @@ static status make(merlin_model *model, const merlin_maps *maps, work *w, merlin
     const int side = maps->crop.side < LARGEST_SIDE ? maps->crop.side : LARGEST_SIDE;
     status s = relit_new(model, maps, side, w->params->stop, &w->relit);
     const double rendered = clock_seconds();
-    if (s == OK) s = surface_new_from(w, model, out);
+    if (s == OK) s = surface_new_from(w, out);
     if (s == OK) s = solve_all(w);
     const double solved = clock_seconds();
     if (s == OK) average_all(w, out);
@@ -137,8 +136,11 @@ static status make(merlin_model *model, const merlin_maps *maps, work *w, merlin
     out->seconds.solve = solved - rendered;
     out->seconds.integrate = ended - solved;
     out->seconds.total = ended - began;
-    if (s == OK) merlin_maps_warnings(maps, &out->warnings);
-    return s;
+    if (s != OK) return s;
+    snprintf(out->relit.model, sizeof out->relit.model, "%s", merlin_relighting_model(model, maps, RELIT_BY));
+    merlin_maps_warnings(maps, &out->warnings);
+    merlin_relighting_warnings(model, maps, RELIT_BY, &out->warnings);
+    return OK;
 }
 
 static status check(const merlin_maps *maps, const merlin_stereo_params *params)

@@ -118,6 +118,28 @@ succeeds '"code":"relit_burnt_out".*"burnt_out":\(0.9\|1\)' relight disc.merlin 
 grep -q '^merlin relight: disc.merlin: \(9[0-9]\|100\) % of the object is burnt out when relit' stderr || complain "no word: $(cat stderr)"
 succeeds '"warnings":\[\]' relight disc.merlin --light 0,0,0 --power 1000 --exposure auto -o glare --json
 
+echo "the report names the weights that worked: the maps' own, or with a word other ones"
+shipped() { MERLIN_MODEL='' "$MERLIN" "$@"; }
+succeeds '"code":"other_model","message":"the maps are of tiny, and the bounces of their light of merlin-point".*"model":"merlin-point"' \
+    shipped relight disc.merlin --light 0.5,0.2,-0.4 -o others --json
+succeeds '"code":"other_model".*decoder.*"model":"merlin-point"' \
+    shipped relight disc.merlin --light 0.5,0.2,-0.4 --by network -o others --json
+succeeds '"model":"tiny"' relight disc.merlin --light 0.5,0.2,-0.4 -o others --json
+grep -q other_model stdout && complain "tiny is another model than tiny: $(cat stdout)"
+for own in merlin-any merlin-env; do
+    succeeds "$own" shipped estimate disc.hdr --size 64 --views 1 --model $own -o $own
+    succeeds "\"model\":\"$own\"" shipped relight $own --light 0.5,0.2,-0.4 -o others --json
+    grep -q other_model stdout && complain "$own is another model than $own: $(cat stdout)"
+done
+succeeds '"model":"merlin-env"' shipped relight merlin-env --light 0.5,0.2,-0.4 --by network -o others --json
+succeeds '"code":"other_model".*"model":"merlin-point"' \
+    shipped relight merlin-any --light 0.5,0.2,-0.4 --by network -o others --json
+succeeds '"model":"tiny"' relight merlin-env --light 0.5,0.2,-0.4 -o others --json
+grep -q '^merlin relight: merlin-env: the maps are of merlin-env, and the bounces of their light of tiny[;]' stderr ||
+    complain "no word of other weights: $(cat stderr)"
+succeeds '"model":"merlin-env"' shipped stereo merlin-env -o others-stereo --json
+succeeds '"model":"merlin-point".*"code":"other_model"' shipped stereo disc.merlin -o others-stereo --json
+
 echo "pictures that show nothing get a word"
 succeeds '"code":"nothing_lit","message":"the object is black in the picture' \
     relight disc.merlin --light 0,0,0 --exposure -20 -o behind --json # behind it the tiny model sees bounces

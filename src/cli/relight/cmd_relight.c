@@ -34,7 +34,6 @@ typedef struct exposing {
 
 typedef struct request {
     const char *input, *list, *mask, *model, *output, *env;
-    char *weights, *flash; /* files; flash: NULL for none */
     float rotate, env_exposure, radius;
     lamp_options lamps;
     merlin_params params;
@@ -247,13 +246,19 @@ static status read_lamps(request *r)
     return s == OK ? check_lamps(r) : s;
 }
 
-/* Gets maps from a folder of estimate or stereo, or estimates them now. */
-static status get_maps(request *r, merlin_model *model, const watch *shown, merlin_maps *maps)
+/* Gets maps from a folder of estimate or stereo, and the model that relights them; or estimates them by it now. */
+static status get_maps(request *r, const watch *shown, merlin_model **model, merlin_maps *maps)
 {
-    *maps = (merlin_maps){0};
-    if (file_is_folder(r->input)) return merlin_maps_read(r->input, maps);
+    const bool folder = file_is_folder(r->input);
+    char *weights = NULL, *flash = NULL;
+    status s = folder ? merlin_maps_read(r->input, maps) : OK;
+    if (s == OK) s = photo_find_models_of(maps, r->model, &weights, &flash);
+    if (s == OK) s = photo_open_models(weights, flash, model);
+    free(weights);
+    free(flash);
+    if (s != OK || folder) return s;
     r->params.progress = shown->tell, r->params.progress_context = shown->context;
-    return photo_maps(model, r->input, r->mask, &r->params, maps);
+    return photo_maps(*model, r->input, r->mask, &r->params, maps);
 }
 
 /* ---- report ---- */
@@ -277,12 +282,18 @@ static void doubt_darkness(const relight_result *result, warnings *doubts)
                  which);
 }
 
+static bool has_lamps(const relight_job *job)
+{
+    return job->lamps.count || job->dome.count || !job->environment;
+}
+
 /* Lists the warnings about the photograph first, if the maps are estimated now. */
 static void find_doubts(const relight_job *job, const relight_result *result, warnings *doubts)
 {
     merlin_maps_warnings(job->maps, doubts);
     for (size_t i = 0; i < job->lamps.noticed.count; i++)
         warnings_add(doubts, job->lamps.noticed.at[i].code, "%s", job->lamps.noticed.at[i].message);
+    if (has_lamps(job)) merlin_relighting_warnings(job->model, job->maps, job->how, doubts);
     doubt_environment(job->environment, doubts);
     doubt_darkness(result, doubts);
     if (result->left > 0)
@@ -310,7 +321,7 @@ static status print_json(const request *r, const relight_job *job, const relight
     json_put_number(report, "dome", job->dome.count);
     if (job->rti.wanted) json_put_text(report, "rti", relight_rti_name(&job->rti));
     json_put_text(report, "by", r->how == MERLIN_BY_NETWORK ? "network" : "brdf");
-    json_put_text(report, "model", merlin_model_name(job->model));
+    json_put_text(report, "model", merlin_relighting_model(job->model, job->maps, job->how));
     json_put_number(report, "exposure", round(100 * (double)result->ev) / 100);
     json_put_number(report, "burnt_out", round(1e4 * result->burnt_out) / 1e4);
     json_put_number(report, "seconds_total", seconds);
@@ -389,8 +400,7 @@ static status relight(request *r, const char *output)
     watch_tell(&shown, "reading", 0);
     if (r->env) s = merlin_environment_read(r->env, r->rotate, r->env_exposure, &environment);
     job.environment = environment;
-    if (s == OK) s = photo_open_models(r->weights, r->flash, &job.model);
-    if (s == OK) s = get_maps(r, job.model, &shown, &maps);
+    if (s == OK) s = get_maps(r, &shown, &job.model, &maps);
     job.maps = &maps;
     if (s == OK) s = to_standard_output(r) ? relight_print(&job, &result) : relight_output(&job, &result);
     stage_bar_end(&bar);
@@ -410,10 +420,7 @@ static status run(request *r)
     if (s == OK && !file_exists(r->input)) s = fail(MERLIN_BAD_INPUT, "there is no photograph or folder %s", r->input);
     if (s == OK) s = check_photo_and_mask(r->input, r->mask);
     if (s == OK && !to_standard_output(r)) s = check_output(output);
-    if (s == OK) s = photo_find_models(r->model, &r->weights, &r->flash);
     if (s == OK) s = relight(r, output);
-    free(r->weights);
-    free(r->flash);
     free(output);
     return s;
 }

@@ -213,16 +213,14 @@ static status from_folder(const request *r, merlin_surface *out)
 
 static status from_photo(const request *r, merlin_surface *out)
 {
-    char *weights, *flash;
+    char *weights = NULL, *flash = NULL;
     merlin_model *model = NULL;
     merlin_maps maps = {0};
-    status s = photo_find_models(r->weights, &weights, &flash);
-    if (s != OK) return s;
     r->solve.progress(r->solve.progress_context, "relighting", 0);
-    s = photo_open_models(weights, flash, &model);
-    if (s == OK)
-        s = r->maps ? merlin_maps_read(r->input, &maps)
-                    : photo_maps(model, r->input, r->capture.mask, &r->params, &maps);
+    status s = r->maps ? merlin_maps_read(r->input, &maps) : OK;
+    if (s == OK) s = photo_find_models_of(&maps, r->weights, &weights, &flash);
+    if (s == OK) s = photo_open_models(weights, flash, &model);
+    if (s == OK && !r->maps) s = photo_maps(model, r->input, r->capture.mask, &r->params, &maps);
     if (s == OK) s = merlin_stereo_from_maps(model, &maps, &r->solve, out);
     merlin_maps_free(&maps);
     merlin_model_close(model);

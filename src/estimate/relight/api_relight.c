@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* merlin_relight, merlin_relight_environment and merlin_relight_found: a picture of maps under other light. */
+/* merlin_relight, merlin_relight_environment and merlin_relight_found: a picture of maps under other light; and which
+ * network makes it. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "base/warnings.h"
 #include "estimate/light/found_light.h"
 #include "estimate/photo/model_pair.h"
 #include "estimate/relight/maps_surface.h"
@@ -94,4 +97,25 @@ merlin_status merlin_relight_found(merlin_model *model, const merlin_maps *maps,
     if (s == OK) s = relight_maps(model, maps, &by, how, out);
     env_map_free(&lights.rest);
     return s;
+}
+
+/* ---- the network ---- */
+
+const char *merlin_relighting_model(const merlin_model *model, const merlin_maps *maps, merlin_relighting how)
+{
+    return model && maps ? network_config(model_network(model, maps, how))->name : "";
+}
+
+void merlin_relighting_warnings(const merlin_model *model, const merlin_maps *maps, merlin_relighting how,
+                                merlin_warnings *list)
+{
+    if (!model || !maps || !list || maps->captured || how == MERLIN_BY_BRDF_DIRECT) return;
+    const char *name = merlin_relighting_model(model, maps, how);
+    if (strcmp(name, maps->model) == 0) return;
+    if (how == MERLIN_BY_NETWORK)
+        warnings_add(list, "other_model", "the maps are of %s, and the decoder that relights them of %s", maps->model,
+                     name);
+    else
+        warnings_add(list, "other_model", "the maps are of %s, and the bounces of their light of %s", maps->model,
+                     name);
 }
