@@ -9,6 +9,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/file.h"
 #include "merlin/relight.h"
@@ -209,6 +210,37 @@ static const char *check_report(void *context, int result)
     return fault;
 }
 
+static int write_files(void *context)
+{
+    const work *w = context;
+    return merlin_surface_write(&w->surface, "pictures", NULL, scratch_path("lack"));
+}
+
+/* Removes what was written. */
+static const char *check_files(void *context, int result)
+{
+    char **names = NULL;
+    size_t count = 0;
+    const char *folder = scratch_path("lack");
+    (void)context;
+    if (result != MERLIN_OK) return file_exists(folder) ? "a folder after a failure" : NULL;
+    assert_int_equal(file_list(folder, NULL, &names, &count), OK);
+    const char *fault = count == 8 ? NULL : "a folder without all of its files";
+    for (size_t i = 0; i < count; i++)
+        assert_int_equal(unlink(names[i]), 0);
+    file_list_free(names, count);
+    assert_int_equal(rmdir(folder), 0);
+    return fault;
+}
+
+static void lack_of_memory_leaves_no_folder(void **state)
+{
+    (void)state;
+    work w = {.surface = ball()};
+    each_allocation_fails(&(memory_trial){"files of a surface", write_files, check_files, &w});
+    merlin_surface_free(&w.surface);
+}
+
 static void lack_of_memory_makes_neither_maps_nor_report(void **state)
 {
     (void)state;
@@ -226,6 +258,8 @@ int main(void)
         cmocka_unit_test(a_report_tells_what_is_known),
         cmocka_unit_test(what_cannot_be_written_leaves_nothing),
         cmocka_unit_test(lack_of_memory_makes_neither_maps_nor_report),
+        cmocka_unit_test(lack_of_memory_leaves_no_folder),
     };
+    merlin_set_threads(1); /* the n-th allocation is the same one each time */
     return cmocka_run_group_tests(tests, scratch_open, scratch_close);
 }

@@ -7,6 +7,8 @@
 #ifndef MERLIN_TESTS_EACH_ALLOCATION_H
 #define MERLIN_TESTS_EACH_ALLOCATION_H
 
+#include <stddef.h>
+
 typedef struct memory_trial {
     const char *name;
     int (*run)(void *context);
@@ -20,5 +22,7 @@ typedef struct memory_trial {
  * way through the program to an allocation is taken that no earlier trial has taken, where it is first come by and
  * where last; at each third all that follow fail, too. In the end the work succeeds as ever. */
 void each_allocation_fails(const memory_trial *trial);
+/* Asserts the same at one of `every` such places, for work that takes long. */
+void some_allocations_fail(const memory_trial *trial, size_t every);
 
 #endif
