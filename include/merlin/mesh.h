@@ -36,8 +36,8 @@ typedef struct merlin_mesh {
                              * same as normals */
     merlin_image albedo;    /* texture: 3 channels, linear, [0, 1], of any size. For colour */
     merlin_image roughness; /* texture: 1 channel, of any size; no data: 1 everywhere */
-    double scale; /* scale of the positions in a GLB's scene, as viewers take a unit for a metre; 0: 1. For positions in
-                   * pixels it makes the whole picture one unit large */
+    double scale; /* scale of the positions in the scene of a GLB or USD, as viewers take a unit for a metre; 0: 1. For
+                   * positions in pixels it makes the whole picture one unit large */
 } merlin_mesh;
 
 /* Options; all zeros are the defaults. */
@@ -56,9 +56,14 @@ void merlin_mesh_free(merlin_mesh *mesh);
 /* Returns MERLIN_WRONG_USE unless a mesh can be written under this name, which ends in .ply, .obj, .glb or .usda, so
  * that one can check before long work. */
 merlin_status merlin_mesh_check_name(const char *path);
+/* Lists the files of which a mesh of this name consists, whether or not they exist: itself and, of an .obj or .usda,
+ * its material and textures; those that merlin_mesh_write makes of this mesh, or, for NULL, of any. MERLIN_WRONG_USE
+ * for other names. Give it to merlin_files_free. */
+merlin_status merlin_mesh_files(const merlin_mesh *mesh, const char *path, merlin_files *out);
 /* Writes a mesh in the format of the path's ending: .ply (binary) with colours of vertices, .obj with NAME.mtl and, if
  * it has albedo, NAME.png, .glb with albedo, roughness and normals as textures, or .usda (a preview surface) with the
  * same as NAME.png, NAME_roughness.png and NAME_normal.png beside it. After a failure no file is left incomplete.
+ * MERLIN_CANNOT_WRITE if one of these lies there without the mesh, as it belongs to something else.
  * written (may be NULL) gets their paths. A GLB has at most 4 GiB. */
 merlin_status merlin_mesh_write(const merlin_mesh *mesh, const char *path, merlin_files *written);
 

@@ -295,6 +295,7 @@ FUNCTIONS: Dict[str, Tuple[Any, List[Any]]] = {
     "mesh_from_surface": (c_int, [_at(Surface), _at(Mesh)]),
     "mesh_free": (None, [_at(Mesh)]),
     "mesh_check_name": (c_int, [c_char_p]),
+    "mesh_files": (c_int, [_at(Mesh), c_char_p, _at(Files)]),
     "mesh_write": (c_int, [_at(Mesh), c_char_p, _at(Files)]),
     "calibrate": (c_int, [c_char_p, _at(CalibrateParams), _at(Calibration)]),
     "calibration_free": (None, [_at(Calibration)]),

@@ -12,6 +12,7 @@
 
 #include "base/file.h"
 #include "base/lights/light_list.h"
+#include "merlin/mesh.h"
 
 static status refuse(const char *folder, const char *name)
 {
@@ -35,6 +36,17 @@ static const char *first_in(const char *folder, const char *const *names)
     while (*names && !is_file_in(folder, *names))
         names++;
     return *names;
+}
+
+/* Refuses if the folder has a part of this mesh. */
+static status check_mesh(const char *folder, const char *mesh)
+{
+    merlin_files files;
+    status s = merlin_mesh_files(NULL, mesh, &files);
+    for (size_t i = 0; i < files.count && s == OK; i++)
+        if (is_file_in(folder, files.at[i])) s = refuse(folder, files.at[i]);
+    merlin_files_free(&files);
+    return s;
 }
 
 /* Tells whether a name is among others, in any case, as for readers of captures. */
@@ -68,13 +80,15 @@ status check_replaced(const char *folder, bool meshes)
     static const char *const maps[] = {"mask.png",           "normal.png",   "albedo.png",
                                        "roughness.png",      "depth.png",    "error.png",
                                        "reconstruction.png", "overview.png", NULL};
-    static const char *const surface[] = {"mesh.ply", "mesh.obj", "mesh.mtl", "mesh.png", "mesh.glb", NULL};
+    static const char *const surface[] = {"mesh.ply", "mesh.obj", "mesh.glb", NULL};
     if (!file_is_folder(folder) || first_in(folder, own)) return OK;
     const char *name = first_in(folder, maps);
-    if (!name && meshes) name = first_in(folder, surface);
-    if (name) return refuse(folder, name);
+    status s = name ? refuse(folder, name) : OK;
+    for (int i = 0; meshes && s == OK && surface[i]; i++)
+        s = check_mesh(folder, surface[i]);
+    if (s != OK) return s;
     bool holds;
-    status s = find_capture(folder, &holds);
+    s = find_capture(folder, &holds);
     if (s != OK || !holds) return s;
     return fail(MERLIN_CANNOT_WRITE,
                 "cannot write into %s: it holds a capture, whose pictures and mask the results would be taken for the "

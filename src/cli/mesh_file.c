@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/text/mesh_parts.h"
 #include "merlin/mesh.h"
 
 status mesh_take_name(const char *path, void *into)
@@ -23,38 +24,34 @@ bool mesh_is_name(const char *word)
     return file_ends_in_any(word, endings);
 }
 
-/* Endings of the pictures beside a mesh, which take the place of its own. */
-static const char *const obj_textures[] = {".png", NULL}, *const no_textures[] = {NULL};
-static const char *const usd_textures[] = {".png", "_normal.png", "_roughness.png", NULL};
-
-static const char *const *textures_of(const char *name)
+/* Checks a file beside an OBJ or USD, which has the mesh's name: it must not replace a map or what is no part of an
+ * earlier mesh, nor be in the folder of pictures to solve, where a texture would replace one of them or be
+ * one more the next time. */
+static status check_part(const mesh_file *m, const char *folder, const char *path)
 {
-    return file_ends_in(name, ".obj") ? obj_textures : file_ends_in(name, ".usda") ? usd_textures : no_textures;
-}
-
-/* Checks a texture of an OBJ or USD, a picture with the mesh's name: it must not replace a map, nor be in the folder of
- * pictures to solve, where it would replace one of them or be one more the next time. */
-static status check_texture(const mesh_file *m, const char *folder, const char *ending)
-{
-    const char *name = file_name_of(m->path), *input = m->inputs[0];
-    char texture[NAME_MAX + 32], aside[PATH_MAX];
-    snprintf(texture, sizeof texture, "%.*s%s", (int)(strrchr(name, '.') - name), name, ending);
-    if (file_is_same(folder, m->folder) && file_exists(staging_path(m->maps, texture, aside)))
+    const char *name = file_name_of(path), *input = m->inputs[0];
+    const bool texture = file_ends_in(name, ".png");
+    char aside[PATH_MAX];
+    if (file_is_same(folder, m->folder) && file_exists(staging_path(m->maps, name, aside)))
         return fail(MERLIN_CANNOT_WRITE, "cannot write %s: its texture would replace the map %s; choose another name",
-                    m->path, texture);
-    if (file_is_folder(input) && file_is_same(folder, input) &&
-        (file_is_in(input, texture) || !file_is_in(input, "maps.exr")))
+                    m->path, name);
+    if (texture && file_is_folder(input) && file_is_same(folder, input) &&
+        (file_is_in(input, name) || !file_is_in(input, "maps.exr")))
         return fail(MERLIN_CANNOT_WRITE,
                     "cannot write %s: its texture %s would lie among what is read; choose another folder", m->path,
-                    texture);
-    return OK;
+                    name);
+    for (int i = 0; i < STAGING_MOST_INPUTS; i++)
+        if (m->inputs[i] && file_is_same(path, m->inputs[i])) return OK; /* which the commit refuses to replace */
+    return mesh_part_check(m->path, path);
 }
 
-static status check_textures(const mesh_file *m, const char *folder)
+static status check_parts(const mesh_file *m, const char *folder)
 {
-    status s = OK;
-    for (const char *const *ending = textures_of(file_name_of(m->path)); s == OK && *ending; ending++)
-        s = check_texture(m, folder, *ending);
+    merlin_files files;
+    status s = merlin_mesh_files(m->mesh, m->path, &files);
+    for (size_t i = 0; i < files.count && s == OK; i++)
+        if (strcmp(files.at[i], m->path) != 0) s = check_part(m, folder, files.at[i]);
+    merlin_files_free(&files);
     return s;
 }
 
@@ -64,7 +61,7 @@ status mesh_file_stage(const mesh_file *m, staging **out)
     if (file_is_folder(m->path)) return fail(MERLIN_CANNOT_WRITE, "cannot write %s: it is a folder", m->path);
     char *folder = file_folder_of(m->path);
     status s = folder ? staging_begin(folder, m->inputs, out) : fail(MERLIN_NO_MEMORY, "no memory for a file name");
-    s = s == OK ? check_textures(m, folder) : fail_in(s, "cannot write %s", m->path);
+    s = s == OK ? check_parts(m, folder) : fail_in(s, "cannot write %s", m->path);
     free(folder);
     if (s != OK) return s;
     char aside[PATH_MAX];

@@ -249,6 +249,15 @@ succeeds 'disc.hdr' estimate . "${small[@]}"
 grep -q "4 files skipped: a.png, a_normal.png, a_roughness.png (a mesh's texture), a.usda (no picture)" "$scratch/stderr" ||
     complain "textures of USD: $(head -1 "$scratch/stderr")"
 rm -r out.merlin a.* a_*
+for other in a.obj:a.png a.obj:a.mtl a.usda:a.png a.usda:a_normal.png a.usda:a_roughness.png; do
+    echo mine >"${other#*:}"
+    refuses 1 "${other%:*}: ${other#*:} is no part of an earlier one" estimate disc.hdr --mesh "${other%:*}" "${small[@]}"
+    [ "$(cat "${other#*:}")" = mine ] || complain "${other#*:} was replaced"
+    absent out.merlin "${other%:*}"
+    rm a*
+done
+for mesh in a.obj a.usda a.obj; do succeeds 'disc.hdr' estimate disc.hdr --mesh $mesh "${small[@]}"; done # share a.png
+rm -r out.merlin a.* a_*
 refuses 1 "its texture would replace the map normal.png" estimate disc.hdr --mesh out.merlin/normal.usda "${small[@]}"
 refuses 2 'a mesh.s name ends in' estimate disc.hdr --mesh a.stl
 refuses 2 'one photograph' estimate disc.hdr disc.hdr --mesh a.obj

@@ -189,6 +189,9 @@ mkdir folder.ply
 refuses 1 'folder.ply' stereo dome --method ls --mesh second.ply --mesh folder.ply -o none
 mkdir taken.mtl # found only when all is moved into place
 refuses 1 'taken.mtl' stereo dome --method ls --mesh taken.obj -o none
+echo mine >beside.png
+refuses 1 'beside.obj: beside.png is no part of an earlier one' stereo dome --method ls --mesh beside.obj -o none
+[ "$(cat beside.png)" = mine ] || complain "beside.png was replaced"
 refuses 1 'maps/depth.obj.*the map depth.png' stereo dome --method ls --mesh maps/depth.obj -o maps
 refuses 1 'dome/dome_000.obj.*dome_000.png' stereo dome --method ls --mesh dome/dome_000.obj -o none
 refuses 1 'dome/cup.obj.*among what is read' stereo dome --method ls --mesh dome/cup.obj -o none

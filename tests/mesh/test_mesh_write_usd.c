@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "image/image.h"
+#include "image/write/write.h"
 #include "merlin/mesh.h"
 #include "scratch.h"
 
@@ -113,12 +114,38 @@ static void a_folder_in_the_way_of_a_picture_leaves_nothing(void **state)
     img_free(&m.albedo);
 }
 
+static void files_of_something_else_are_kept(void **state)
+{
+    (void)state;
+    merlin_mesh m = quad();
+    merlin_files list;
+    assert_int_equal(img_new(&m.albedo, 2, 2, 3), MERLIN_OK);
+    assert_int_equal(merlin_mesh_files(NULL, "in/owl.obj", &list), MERLIN_OK);
+    assert_int_equal(list.count, 3);
+    assert_string_equal(list.at[0], "in/owl.mtl");
+    merlin_files_free(&list);
+    assert_int_equal(merlin_mesh_files(&m, "owl.USDA", &list), MERLIN_OK);
+    assert_string_equal(list.at[0], "owl.USDA");
+    merlin_files_free(&list);
+    assert_int_equal(merlin_mesh_files(NULL, "owl.stl", &list), MERLIN_WRONG_USE);
+    assert_int_equal(img_write_png(scratch_path("owl.png"), &m.albedo, IMG_SRGB8), MERLIN_OK);
+    assert_int_equal(merlin_mesh_write(&m, scratch_path("owl.usda"), NULL), MERLIN_CANNOT_WRITE);
+    assert_int_equal(merlin_mesh_write(&m, scratch_path("owl.ply"), NULL), MERLIN_OK);
+    assert_int_equal(merlin_mesh_write(&m, scratch_path("owl.obj"), NULL), MERLIN_CANNOT_WRITE);
+    assert_int_equal(remove(scratch_path("owl.png")), 0);
+    for (int i = 0; i < 2; i++)
+        assert_int_equal(merlin_mesh_write(&m, scratch_path("owl.obj"), NULL), MERLIN_OK);
+    assert_int_equal(merlin_mesh_write(&m, scratch_path("owl.usda"), NULL), MERLIN_OK);
+    img_free(&m.albedo);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(geometry_is_the_mesh_s),
         cmocka_unit_test(every_picture_that_it_names_lies_beside_it),
         cmocka_unit_test(a_folder_in_the_way_of_a_picture_leaves_nothing),
+        cmocka_unit_test(files_of_something_else_are_kept),
     };
     return cmocka_run_group_tests(tests, scratch_open, scratch_close);
 }

@@ -10,20 +10,34 @@
 #include "base/api_needs.h"
 #include "base/file.h"
 #include "base/skipped.h"
+#include "base/text/mesh_parts.h"
 #include "image/read/folder.h"
 #include "image/read/mask_names.h"
 #include "image/read/read.h"
 
+/* Tells whether a name is that of a part of a mesh.ply, mesh.obj or the like. */
+static bool is_mesh_name(const char *name)
+{
+    static const char *const meshes[] = {"mesh.ply", "mesh.obj", "mesh.glb", "mesh.usda"};
+    const size_t stem = strlen("mesh");
+    if (strncmp(name, "mesh", stem) != 0) return false;
+    for (size_t i = 0; i < sizeof meshes / sizeof meshes[0]; i++)
+        for (mesh_part part = MESH_SCENE; part < MESH_PARTS; part++) {
+            const char *ending = mesh_part_ending(meshes[i], part);
+            if (ending && strcmp(name + stem, ending) == 0) return true;
+        }
+    return false;
+}
+
 /* Tells whether estimate and stereo write a file of this name with maps.exr. */
 static bool is_result_name(const char *name)
 {
-    static const char *const results[] = {"albedo.png",         "depth.png",     "error.png",   "maps.exr",
-                                          "mask.png",           "mesh.png",      "normal.png",  "overview.png",
-                                          "reconstruction.png", "roughness.png", "report.json", "mesh.glb",
-                                          "mesh.obj",           "mesh.mtl",      "mesh.ply"};
+    static const char *const results[] = {"albedo.png",    "depth.png",  "error.png",    "maps.exr",
+                                          "mask.png",      "normal.png", "overview.png", "reconstruction.png",
+                                          "roughness.png", "report.json"};
     for (size_t i = 0; i < sizeof results / sizeof results[0]; i++)
         if (strcmp(name, results[i]) == 0) return true;
-    return false;
+    return is_mesh_name(name);
 }
 
 static status no_memory(void)
@@ -64,16 +78,22 @@ static bool is_texture_of(const char *texture, const char *ending, const char *m
     return strncmp(mesh, texture, stem) == 0 && mesh[stem] == '.' && !strchr(mesh + stem + 1, '.');
 }
 
+/* Tells whether a picture is a texture of a mesh; that of an OBJ is known by its material. */
+static bool is_texture_for(const char *picture, const char *mesh)
+{
+    const char *kind = file_ends_in(mesh, ".mtl") ? "mesh.obj" : file_ends_in(mesh, ".usda") ? mesh : NULL;
+    for (mesh_part part = MESH_ALBEDO; kind && part < MESH_PARTS; part++) {
+        const char *ending = mesh_part_ending(kind, part);
+        if (ending && is_texture_of(picture, ending, mesh)) return true;
+    }
+    return false;
+}
+
 /* Tells whether a picture is a texture of an OBJ or USD that --mesh named. */
 static bool is_texture(const img_folder *f, const img_folder_file *file)
 {
-    static const char *const of_usd[] = {".png", "_normal.png", "_roughness.png"};
-    for (size_t i = 0; i < f->count && file_ends_in(file->name, ".png"); i++) {
-        const char *mesh = f->at[i].name;
-        if (file_ends_in(mesh, ".mtl") && is_texture_of(file->name, ".png", mesh)) return true;
-        for (int k = 0; k < 3 && file_ends_in(mesh, ".usda"); k++)
-            if (is_texture_of(file->name, of_usd[k], mesh)) return true;
-    }
+    for (size_t i = 0; i < f->count && file_ends_in(file->name, ".png"); i++)
+        if (is_texture_for(file->name, f->at[i].name)) return true;
     return false;
 }
 

@@ -1,38 +1,24 @@
 /* SPDX-License-Identifier: MIT */
 /* Writes a mesh to the format that its file's name ends in, and tells which files that made. */
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
 #include "base/api_needs.h"
 #include "base/file.h"
+#include "base/text/mesh_parts.h"
 #include "mesh/write/mesh_formats.h"
-
-enum { MOST_FILES = 4 };
-
-/* Condition on a mesh for one of a format's files. */
-typedef enum need { NEEDS_NOTHING, NEEDS_ALBEDO, NEEDS_FACE_NORMALS, NEEDS_ROUGHNESS } need;
 
 typedef struct format {
     const char *ending;
     status (*write)(const char *path, const merlin_mesh *m);
-    struct {
-        const char *ending;
-        need need;
-    } files[MOST_FILES]; /* sorted, behind the last one NULL */
 } format;
 
 static const format formats[] = {
-    {".ply", mesh_write_ply, {{".ply", NEEDS_NOTHING}}},
-    {".obj", mesh_write_obj, {{".mtl", NEEDS_NOTHING}, {".obj", NEEDS_NOTHING}, {".png", NEEDS_ALBEDO}}},
-    {".glb", mesh_write_glb, {{".glb", NEEDS_NOTHING}}},
-    {".usda",
-     mesh_write_usda,
-     {{".png", NEEDS_ALBEDO},
-      {".usda", NEEDS_NOTHING},
-      {"_normal.png", NEEDS_FACE_NORMALS},
-      {"_roughness.png", NEEDS_ROUGHNESS}}},
+    {".ply", mesh_write_ply},
+    {".obj", mesh_write_obj},
+    {".glb", mesh_write_glb},
+    {".usda", mesh_write_usda},
 };
 enum { FORMATS = sizeof formats / sizeof formats[0] };
 
@@ -80,34 +66,42 @@ static status check(const merlin_mesh *m)
 
 /* ---- what is written ---- */
 
-static bool has(const merlin_mesh *m, need n)
+static bool has(const merlin_mesh *m, mesh_part part)
 {
-    switch (n) {
-    case NEEDS_ALBEDO:
+    switch (part) {
+    case MESH_ALBEDO:
         return m->albedo.data != NULL;
-    case NEEDS_FACE_NORMALS:
+    case MESH_NORMAL:
         return m->face_normals != NULL;
-    case NEEDS_ROUGHNESS:
+    case MESH_ROUGHNESS:
         return m->roughness.data != NULL;
     default:
         return true;
     }
 }
 
-/* Lists names before anything is written, so that a lack of memory leaves no file. */
-static status list_files(const format *f, const char *path, const merlin_mesh *m, merlin_files *out)
+static int compare_paths(const void *a, const void *b)
 {
-    const int stem = (int)(strlen(path) - strlen(f->ending));
-    out->at = calloc(MOST_FILES, sizeof *out->at);
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+merlin_status merlin_mesh_files(const merlin_mesh *mesh, const char *path, merlin_files *out)
+{
+    if (out) *out = (merlin_files){0};
+    status s = api_needs(__func__, path && out);
+    if (s == OK) s = merlin_mesh_check_name(path);
+    if (s != OK) return s;
+    out->at = calloc(MESH_PARTS, sizeof *out->at);
     bool lost = !out->at;
-    for (size_t i = 0; !lost && i < MOST_FILES && f->files[i].ending; i++) {
-        if (!has(m, f->files[i].need)) continue;
-        /* the ending that was asked for keeps its case */
-        const char *ending = strcmp(f->files[i].ending, f->ending) == 0 ? path + stem : f->files[i].ending;
-        lost = asprintf(&out->at[out->count], "%.*s%s", stem, path, ending) < 0;
+    for (mesh_part part = MESH_SCENE; !lost && part < MESH_PARTS; part++) {
+        if (!mesh_part_ending(path, part) || (mesh && !has(mesh, part))) continue;
+        lost = !(out->at[out->count] = mesh_part_path(path, part));
         out->count += !lost;
     }
-    if (!lost) return OK;
+    if (!lost) {
+        qsort(out->at, out->count, sizeof *out->at, compare_paths);
+        return OK;
+    }
     merlin_files_free(out);
     return fail(MERLIN_NO_MEMORY, "no memory for file names");
 }
@@ -127,7 +121,10 @@ merlin_status merlin_mesh_write(const merlin_mesh *mesh, const char *path, merli
     if (s == OK) s = merlin_mesh_check_name(path);
     if (s == OK) s = check(mesh);
     if (s == OK) s = file_check_writable(path);
-    if (s == OK) s = list_files(format_of(path), path, mesh, &files);
+    /* before anything is written, so that a lack of memory leaves no file */
+    if (s == OK) s = merlin_mesh_files(mesh, path, &files);
+    for (size_t i = 0; s == OK && i < files.count; i++)
+        s = mesh_part_check(path, files.at[i]);
     if (s == OK) s = format_of(path)->write(path, mesh);
     if (s == OK && written) {
         add_sizes(&files);

@@ -6,16 +6,9 @@
 
 #include "base/file.h"
 #include "base/text/decimal.h"
+#include "base/text/mesh_parts.h"
 #include "image/write/write.h"
 #include "mesh/write/mesh_formats.h"
-
-/* Returns path with another extension of four characters, malloc'ed. */
-static char *with_ending(const char *path, const char *ending)
-{
-    char *out = strdup(path);
-    if (out) memcpy(out + strlen(out) - 4, ending, 4);
-    return out;
-}
 
 typedef struct obj {
     const merlin_mesh *mesh;
@@ -97,7 +90,8 @@ static status write_aside(const char *const path[FILES], char *aside[FILES], con
 
 status mesh_write_obj(const char *path, const merlin_mesh *m)
 {
-    char *material = with_ending(path, ".mtl"), *texture = with_ending(path, ".png"), *aside[FILES] = {NULL};
+    char *material = mesh_part_path(path, MESH_MATERIAL), *texture = mesh_part_path(path, MESH_ALBEDO);
+    char *aside[FILES] = {NULL};
     const char *const paths[FILES] = {texture, material, path};
     status s = material && texture ? write_aside(paths, aside, m) : fail(MERLIN_NO_MEMORY, "no memory for file names");
     s = file_commit_all(s, aside, paths, FILES);

@@ -9,14 +9,15 @@
 
 #include "base/file.h"
 #include "base/text/decimal.h"
+#include "base/text/mesh_parts.h"
 #include "image/write/write.h"
 #include "mesh/write/mesh_formats.h"
 #include "mesh/write/mesh_normal_map.h"
 #include "optics/brdf.h"
 
-/* The pictures, in the order of their names, and the file itself. */
+/* The pictures, and the file itself. */
 enum { ALBEDO, NORMAL, ROUGHNESS, PICTURES, SCENE = PICTURES, FILES };
-static const char *const picture_endings[PICTURES] = {".png", "_normal.png", "_roughness.png"};
+static const mesh_part picture_parts[PICTURES] = {MESH_ALBEDO, MESH_NORMAL, MESH_ROUGHNESS};
 
 typedef struct usd {
     const merlin_mesh *mesh;
@@ -206,16 +207,13 @@ static status write_aside(const char *const path[FILES], char *aside[FILES], con
 status mesh_write_usda(const char *path, const merlin_mesh *m)
 {
     const bool there[PICTURES] = {m->albedo.data != NULL, m->face_normals != NULL, m->roughness.data != NULL};
-    const int stem = (int)(strlen(path) - strlen(".usda"));
     char *picture[PICTURES] = {NULL}, *aside[FILES] = {NULL};
     const char *paths[FILES] = {[SCENE] = path};
     status s = OK;
     for (int i = 0; s == OK && i < PICTURES; i++) {
-        if (there[i] && asprintf(&picture[i], "%.*s%s", stem, path, picture_endings[i]) < 0) {
-            picture[i] = NULL;
-            s = fail(MERLIN_NO_MEMORY, "no memory for file names");
-        }
-        paths[i] = picture[i];
+        if (!there[i]) continue;
+        paths[i] = picture[i] = mesh_part_path(path, picture_parts[i]);
+        if (!picture[i]) s = fail(MERLIN_NO_MEMORY, "no memory for file names");
     }
     if (s == OK) s = write_aside(paths, aside, m);
     s = file_commit_all(s, aside, paths, FILES);
