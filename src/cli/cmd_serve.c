@@ -110,11 +110,17 @@ static status announce(const request *r, const serve *server)
     status s = OK;
     if (r->json) {
         cJSON *report = report_begin(NULL);
-        json_put_text(report, "address", serve_address(server));
+        json_put_text(report, "address", serve_address(server, 0));
+        cJSON *all = json_put_array(report, "addresses");
+        for (int i = 0; serve_address(server, i); i++)
+            json_append_text(all, serve_address(server, i));
         s = json_line_print(report);
         cJSON_Delete(report);
-    } else if (!r->quiet)
-        printf("merlin serves at %s (Ctrl-C ends it)\n", serve_address(server));
+    } else if (!r->quiet) {
+        printf("merlin serves at %s (Ctrl-C ends it)\n", serve_address(server, 0));
+        for (int i = 1; serve_address(server, i); i++)
+            printf("              or %s\n", serve_address(server, i));
+    }
     return fflush(stdout) == 0 ? s : fail(MERLIN_CANNOT_WRITE, "cannot write to standard output");
 }
 

@@ -9,12 +9,13 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "serve/http/addresses.h"
 #include "serve/http/http_library.h"
 #include "serve/http/listen.h"
 #include "serve/http/requests.h"
 #include "serve/serve_texts.h"
 
-enum { TOKEN = 32, NONCE = 24, ADDRESS = 1024 };
+enum { TOKEN = 32, NONCE = 24, ADDRESS = 512 };
 
 struct serve {
     request_site site;
@@ -22,7 +23,8 @@ struct serve {
     struct MHD_Daemon *daemon;
     int socket;
     char token[2 * TOKEN + 1], nonce[NONCE + 1];
-    char policy[512], address[ADDRESS];
+    char policy[512], address[ADDRESSES_MOST][ADDRESS];
+    int address_count;
     char *page, *openapi;
 };
 
@@ -89,12 +91,15 @@ static status make_guard(const serve_params *p, serve *s)
     return random_hex(s->token, TOKEN);
 }
 
-static void make_address(const serve_params *p, serve *s)
+static void make_addresses(const serve_params *p, serve *s)
 {
-    const char *host = p->host ? p->host : "127.0.0.1", *token = s->site.guard.token;
-    const bool is_v6 = strchr(host, ':') != NULL;
-    snprintf(s->address, ADDRESS, "http://%s%s%s:%d/%s%s", is_v6 ? "[" : "", host, is_v6 ? "]" : "", s->site.guard.port,
-             token ? "?token=" : "", token ? token : "");
+    const char *token = s->site.guard.token;
+    addresses hosts;
+    addresses_list(p->host ? p->host : "127.0.0.1", p->names, &hosts);
+    for (int i = 0; i < hosts.count; i++)
+        snprintf(s->address[i], ADDRESS, "http://%s:%d/%s%s", hosts.at[i], s->site.guard.port, token ? "?token=" : "",
+                 token ? token : "");
+    s->address_count = hosts.count;
 }
 
 static status start_daemon(serve *s)
@@ -131,7 +136,7 @@ static status begin(const serve_params *p, serve *s)
                                .keep = s->site.keep};
     done = jobs_open(&queue, &s->site.jobs);
     if (done == OK) done = start_daemon(s);
-    if (done == OK) make_address(p, s);
+    if (done == OK) make_addresses(p, s);
     return done;
 }
 
@@ -162,9 +167,9 @@ void serve_close(serve *s)
     free(s);
 }
 
-const char *serve_address(const serve *s)
+const char *serve_address(const serve *s, int index)
 {
-    return s->address;
+    return index < s->address_count ? s->address[index] : NULL;
 }
 
 void serve_run(serve *s, int (*stop)(void))

@@ -4,7 +4,7 @@
  *     const serve_params params = {.model = model, .port = 8712, .keep_minutes = 30, ...};
  *     serve *s;
  *     if (serve_open(&params, &s) == OK) {
- *         printf("%s\n", serve_address(s));
+ *         printf("%s\n", serve_address(s, 0));
  *         serve_run(s, stop);
  *     }
  *     serve_close(s);                     ends the work, removes all uploads and results
@@ -36,8 +36,9 @@ typedef struct serve_params {
 status serve_open(const serve_params *params, serve **out);
 void serve_close(serve *s);
 
-/* Returns the address for a browser, with the token if there is one. */
-const char *serve_address(const serve *s);
+/* Returns an address for a browser, with the token if there is one. There is one, index 0, or, where it listens at all
+ * of the machine's, one for each name and network; NULL: there are no more. */
+const char *serve_address(const serve *s, int index);
 /* Returns when stop does so. */
 void serve_run(serve *s, int (*stop)(void));
 

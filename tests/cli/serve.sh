@@ -80,9 +80,23 @@ asks 400 "a power is 0 or more" "$site/v1/relight" -F job="$maps" -F light=0,0,0
 asks 400 'relight wants a light' "$site/v1/relight" -F job="$maps"
 asks 400 'one of photo, maps' "$site/v1/relight" -F light=0,0,0
 asks 400 'light wants 3 numbers' "$site/v1/relight" -F job="$maps" -F light=1,2
-asks 404 'not there, or not done' "$site/v1/relight" -F job=00000000000000000000000000000000 -F light=0,0,0
-asks 404 'not there, or not done' "$site/v1/relight" -F job=../../etc -F light=0,0,0
-asks 404 'not there, or not done' "$site/v1/relight" -F job="$relit" -F light=0,0,0
+asks 404 'not there, or has no maps' "$site/v1/relight" -F job=00000000000000000000000000000000 -F light=0,0,0
+asks 404 'not there, or has no maps' "$site/v1/relight" -F job=../../etc -F light=0,0,0
+asks 404 'not there, or has no maps' "$site/v1/relight" -F job="$relit" -F light=0,0,0
+for field in exposure=1 views=2 size=256 fov=40 flash=1 point=9,9 box=1,1,9,9 mask=@own/mask.png; do
+    asks 400 "relight of maps takes no ${field%%=*}, which is of a photo" "$site/v1/relight" -F job="$maps" -F light=0,0,0 -F "$field"
+done
+asks 400 'rotate wants an environment' "$site/v1/relight" -F job="$maps" -F light=0,0,0 -F rotate=90
+asks 400 'environment_exposure wants an environment' "$site/v1/relight" -F job="$maps" -F light=0,0,0 -F environment_exposure=1
+asks 400 'together is of the lamps' "$site/v1/relight" -F job="$maps" -F environment=@room.hdr -F together=1
+asks 400 'knows one lamp alone' "$site/v1/relight" -F job="$maps" -F light=0,0,0 -F light=1,0,0 -F together=1 -F by=network
+
+echo "the report of pictures in other light has the command's warnings"
+glare=$(submit relight -F job="$maps" -F light=0,0,0,1000 -F side=64)
+told "$glare" | grep -q '"report":{"version":"[^"]*","schema":1,"warnings":\[.*"code":"relit_burnt_out".*"by":"brdf","model":"merlin-point","burnt_out":[01]' ||
+    complain "no word of glare: $(told "$glare")"
+glare=$(submit relight -F job="$maps" -F light=0,0,-3 -F side=64 -F by=direct)
+told "$glare" | grep -q '"code":"nothing_lit"' || complain "no word of darkness: $(told "$glare")"
 unmapped=$(submit relight -F maps=@"$demo" -F light=0,0,0)
 told "$unmapped" | grep -q '"state":"failed".*maps.exr' || complain "a picture in the place of maps: $(told "$unmapped")"
 
@@ -110,6 +124,8 @@ told "$single" | grep -q '"state":"done"' || complain "stereo of a photograph: $
 fetches "$single" normal.png got
 cmp -s got relit_surface/normal.png || complain "stereo of a photograph is another than merlin stereo's"
 asks 400 'stereo of a photo knows no field' "$site/v1/stereo" -F photo=@"$demo" -F lights=@dome/dome.lp
+asks 400 'has the methods auto, near and uncalibrated' "$site/v1/stereo" -F photo=@"$demo" -F method=ls
+asks 400 'takes no lights and no near' "$site/v1/stereo" "${pictures[@]}" -F lights=@dome/dome.lp -F method=uncalibrated
 asks 400 'stereo wants 3 pictures or more, not 2' "$site/v1/stereo" "${pictures[@]:0:4}"
 asks 400 'filenames.txt, sent as pictures, has no name of a picture' "$site/v1/stereo" "${pictures[@]}" -F "pictures=@dome/dome.lp;filename=filenames.txt"
 cp "$demo" secret.png
@@ -127,8 +143,15 @@ asks 400 'photo of estimate is a value\|its part needs a filename' "$site/v1/est
 asks 400 'point wants 2 numbers' "$site/v1/estimate" -F photo=@"$demo" -F point=nan,3
 asks 400 'no multipart' "$site/v1/estimate" -H 'Content-Type: text/plain' -d photo
 asks 404 'no such thing' "$site/v1/paint" -F photo=@"$demo"
-asks 405 'GET, POST and DELETE' -X PUT "$site/v1/status"
-asks 405 "GET, POST and DELETE" -X OPTIONS -H "Origin: $site" "$site/v1/estimate"
+asks 405 'this takes GET, HEAD alone' -X PUT "$site/v1/status"
+grep -qi '^allow: GET, HEAD.$' head || complain "no Allow: $(cat head)"
+asks 405 'this takes GET, HEAD alone' "$site/v1/status" -F photo=@"$demo"
+asks 405 'this takes GET, HEAD alone' -X GE "$site/v1/status"
+asks 405 'this takes POST alone' "$site/v1/estimate"
+asks 405 'this takes POST alone' -X DELETE "$site/v1/estimate"
+asks 405 'this takes GET, HEAD, DELETE alone' -X POST "$site/v1/jobs/$solid"
+asks 405 'this takes GET, HEAD alone' -X DELETE "$site/v1/jobs/$solid/files.zip"
+asks 405 'this takes POST alone' -X OPTIONS -H "Origin: $site" "$site/v1/estimate"
 asks 403 other_site -X OPTIONS -H "Origin: http://example.org" "$site/v1/estimate"
 grep -qi 'access-control' head && complain "other sites' pages are let in"
 
@@ -173,12 +196,25 @@ asks 202 "queued\|working" "$site/v1/estimate" -F photo=@"$demo"
 first=$(identifier <body)
 asks 202 '"state":"queued","position":[12]' "$site/v1/estimate" -F photo=@"$demo"
 second=$(identifier <body)
+for early in files.zip files/maps.exr; do
+    asks 409 '"code":"not_done","error":"the job is not done' "$site/v1/jobs/$second/$early"
+    asks 409 '"code":"not_done","error":"the job failed' "$site/v1/jobs/$wrong/$early"
+done
+asks 409 '"code":"not_done"' "$site/v1/relight" -F job="$second" -F light=0,0,0
 asks 204 '' -X DELETE "$site/v1/jobs/$first"
 asks 204 '' -X DELETE "$site/v1/jobs/$second"
 
 echo "the interface describes itself"
 asks 200 '"openapi": "3' "$site/v1/openapi.json"
 cmp -s body "$MERLIN_SOURCE_DIR/docs/openapi.json" || complain "the description is another than docs/openapi.json"
+
+echo "a server for other machines tells addresses that they can call"
+"$MERLIN" serve --host 0.0.0.0 --name studio.lan --port 0 --json >other.txt 2>other.err &
+other=$!
+for _ in {1..600}; do grep -q address other.txt && break; sleep 0.1; done
+grep -q '"address":"http://studio.lan:[0-9]*/?token=[0-9a-f]*","addresses":\["http://studio.lan:' other.txt || complain "no address: $(cat other.txt other.err)"
+grep -q '0\.0\.0\.0' other.txt && complain "nobody can call 0.0.0.0: $(cat other.txt)"
+kill "$other" && wait "$other"
 
 echo "a server that is told to end while it works ends, and leaves nothing"
 asks 202 "queued\|working" "$site/v1/estimate" -F photo=@"$demo"

@@ -223,6 +223,7 @@ static void what_fails_keeps_nothing_and_hides_the_folder(void **state)
     assert_string_equal(told(x, id, "error", words), "cannot read cup.png: no picture");
     assert_false(file_exists(store_path(x->store, id, STORE_OUT, "result.txt", path)));
     assert_int_equal(jobs_open_file(x->queue, id, "result.txt", &bytes), -1);
+    assert_int_equal(jobs_look(x->queue, id), JOBS_WITHOUT);
 }
 
 static void files_are_had_by_the_names_that_were_listed(void **state)
@@ -243,7 +244,13 @@ static void files_are_had_by_the_names_that_were_listed(void **state)
     close(file);
     assert_int_equal(add(x, "job", id, next), JOBS_TAKEN);
     await_state(x, next, "done");
+    assert_int_equal(jobs_look(x->queue, next), JOBS_READY);
+    assert_int_equal(jobs_look(x->queue, "../.."), JOBS_NO_JOB);
     assert_int_equal(add(x, "job", "../..", next), JOBS_NONE);
+    atomic_store(&going, 0);
+    assert_int_equal(add(x, NULL, NULL, id), JOBS_TAKEN);
+    assert_int_equal(jobs_look(x->queue, id), JOBS_WAIT);
+    assert_int_equal(add(x, "job", id, next), JOBS_EARLY);
 }
 
 static void a_queue_that_closes_stops_its_work_and_removes_all(void **state)

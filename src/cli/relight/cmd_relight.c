@@ -263,25 +263,6 @@ static status get_maps(request *r, const watch *shown, merlin_model **model, mer
 
 /* ---- report ---- */
 
-static void doubt_environment(const merlin_environment *e, warnings *doubts)
-{
-    const double negative = merlin_environment_negative(e);
-    if (negative > 0)
-        warnings_add(doubts, "environment_values",
-                     "%.3g %% of the surroundings' values are negative, and were taken for black", 100 * negative);
-}
-
-static void doubt_darkness(const relight_result *result, warnings *doubts)
-{
-    char which[64] = "the picture";
-    if (result->dark == 0) return;
-    if (result->pictures > 1) snprintf(which, sizeof which, "%zu of %zu pictures", result->dark, result->pictures);
-    warnings_add(doubts, "nothing_lit",
-                 "the object is black in %s: lamps light what faces them, from in front of 0,0,-1, where it is; or the "
-                 "exposure is too low",
-                 which);
-}
-
 static bool has_lamps(const relight_job *job)
 {
     return job->lamps.count || job->dome.count || !job->environment;
@@ -294,19 +275,12 @@ static void find_doubts(const relight_job *job, const relight_result *result, wa
     for (size_t i = 0; i < job->lamps.noticed.count; i++)
         warnings_add(doubts, job->lamps.noticed.at[i].code, "%s", job->lamps.noticed.at[i].message);
     if (has_lamps(job)) merlin_relighting_warnings(job->model, job->maps, job->how, doubts);
-    doubt_environment(job->environment, doubts);
-    doubt_darkness(result, doubts);
+    relit_light_warn_negative(merlin_environment_negative(job->environment), doubts);
+    relit_light_warn(&result->seen,
+                     job->exposing == RELIGHT_AS_SOURCE ? "--exposure auto or an EV below 0" : "--exposure EV", doubts);
     if (result->left > 0)
         warnings_add(doubts, "pictures_left", "%zu picture%s of an earlier run %s still beside these, %s first",
                      result->left, result->left == 1 ? "" : "s", result->left == 1 ? "is" : "are", result->left_name);
-    if (result->burnt == 0) return;
-    char of_several[96] = "";
-    if (result->pictures > 1)
-        snprintf(of_several, sizeof of_several, " at most, %zu of %zu pictures more than %.0f %%", result->burnt,
-                 result->pictures, 100 * RELIGHT_MUCH_BURNT_OUT);
-    warnings_add(doubts, "relit_burnt_out", "%.0f %% of the object is burnt out when relit%s: darken it by %s",
-                 100 * result->burnt_out, of_several,
-                 job->exposing == RELIGHT_AS_SOURCE ? "--exposure auto or an EV below 0" : "--exposure EV");
 }
 
 static status print_json(const request *r, const relight_job *job, const relight_result *result, double seconds)
@@ -323,7 +297,7 @@ static status print_json(const request *r, const relight_job *job, const relight
     json_put_text(report, "by", r->how == MERLIN_BY_NETWORK ? "network" : "brdf");
     json_put_text(report, "model", merlin_relighting_model(job->model, job->maps, job->how));
     json_put_number(report, "exposure", round(100 * (double)result->ev) / 100);
-    json_put_number(report, "burnt_out", round(1e4 * result->burnt_out) / 1e4);
+    json_put_number(report, "burnt_out", round(1e4 * result->seen.burnt_out) / 1e4);
     json_put_number(report, "seconds_total", seconds);
     status s = json_line_print(report);
     cJSON_Delete(report);

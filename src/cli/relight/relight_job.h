@@ -5,6 +5,7 @@
 
 #include <stdbool.h>
 
+#include "base/lights/relit_light.h"
 #include "base/staging.h"
 #include "base/status.h"
 #include "base/watch.h"
@@ -61,15 +62,10 @@ typedef struct relight_job {
 typedef struct relight_result {
     staged_files files;
     float ev;           /* stops by which the pictures are brighter than with RELIGHT_AS_SOURCE */
-    double burnt_out;   /* largest share of the object's pixels with a channel at white, over all pictures */
-    size_t pictures;    /* number of pictures */
-    size_t burnt;       /* number with RELIGHT_MUCH_BURNT_OUT or more */
-    size_t dark;        /* number in which the object is black */
+    relit_light seen;   /* what is burnt out or black */
     size_t left;        /* number of numbered pictures of an earlier run among them */
     char left_name[16]; /* name of the first of these */
 } relight_result;
-
-#define RELIGHT_MUCH_BURNT_OUT 0.05
 
 /* Returns the number of pictures of the photograph's size. */
 size_t relight_count_whole(const relight_job *job);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "cli/relight/relight_work.h"
 
-#include <math.h>
 #include <stdio.h>
 
 status relight_check(const relight_work *w)
@@ -20,29 +19,6 @@ size_t relight_count_whole(const relight_job *job)
     return relight_count_lights(job) + (size_t)job->dome.count;
 }
 
-/* Least linear value that is not 0 in an 8-bit file. */
-static const float LEAST_SEEN = 0.5f / 255 / 12.92f;
-static const double LITTLE_LIT = 0.01;
-
-/* Counts the object's white pixels, and those that are not black. */
-static void note_light(relight_work *w, const merlin_image *square)
-{
-    const merlin_image *mask = merlin_relighter_mask(w->relighter);
-    size_t burnt = 0, lit = 0, count = 0;
-    for (size_t i = 0; i < (size_t)mask->width * (size_t)mask->height; i++) {
-        const float *value = square->data + 3 * i;
-        if (mask->data[i] < 0.5f) continue;
-        burnt += value[0] >= 1 || value[1] >= 1 || value[2] >= 1;
-        lit += value[0] >= LEAST_SEEN || value[1] >= LEAST_SEEN || value[2] >= LEAST_SEEN;
-        count++;
-    }
-    double share = count ? (double)burnt / (double)count : 0;
-    w->result->burnt_out = fmax(w->result->burnt_out, share);
-    w->result->burnt += share >= RELIGHT_MUCH_BURNT_OUT;
-    w->result->dark += (double)lit < LITTLE_LIT * (double)count;
-    w->result->pictures++;
-}
-
 bool relight_surroundings_turn(const relight_job *job)
 {
     return job->environment || job->found;
@@ -59,7 +35,7 @@ status relight_square(relight_work *w, const merlin_lamp *lights, int count, mer
 {
     const merlin_environment *around = w->job->found ? w->found.rest : w->job->environment;
     status s = merlin_relighter_render_lamps(w->relighter, lights, count, around, out);
-    if (s == OK) note_light(w, out);
+    if (s == OK) relit_light_note(&w->result->seen, out, merlin_relighter_mask(w->relighter));
     return s;
 }
 

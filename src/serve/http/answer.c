@@ -46,7 +46,8 @@ enum MHD_Result answer_json(struct MHD_Connection *c, unsigned status_code, cJSO
     return send_with(c, status_code, r, "application/json", NO_POLICY);
 }
 
-enum MHD_Result answer_error(struct MHD_Connection *c, unsigned status_code, const char *code, const char *words)
+static enum MHD_Result answer_refusal(struct MHD_Connection *c, unsigned status_code, const char *code,
+                                      const char *words, const char *allow)
 {
     static const char *const lack = "{\"code\":\"no_memory\",\"error\":\"no memory for an answer\"}";
     cJSON *o = cJSON_CreateObject();
@@ -60,8 +61,20 @@ enum MHD_Result answer_error(struct MHD_Connection *c, unsigned status_code, con
     if (!r) free(text);
     if (r && status_code == MHD_HTTP_UNAUTHORIZED) put(r, "WWW-Authenticate", "Bearer");
     if (r && status_code == MHD_HTTP_SERVICE_UNAVAILABLE) put(r, "Retry-After", "5");
-    if (r && status_code == MHD_HTTP_METHOD_NOT_ALLOWED) put(r, "Allow", "GET, HEAD, POST, DELETE");
+    if (r && allow) put(r, "Allow", allow);
     return send_with(c, status_code, r, "application/json", NO_POLICY);
+}
+
+enum MHD_Result answer_error(struct MHD_Connection *c, unsigned status_code, const char *code, const char *words)
+{
+    return answer_refusal(c, status_code, code, words, NULL);
+}
+
+enum MHD_Result answer_no_method(struct MHD_Connection *c, const char *allow)
+{
+    char words[64];
+    snprintf(words, sizeof words, "this takes %s alone", allow);
+    return answer_refusal(c, MHD_HTTP_METHOD_NOT_ALLOWED, "no_method", words, allow);
 }
 
 static const char *type_of(const char *name)

@@ -10,6 +10,8 @@
 
 /* Sends {"code": CODE, "error": words}: a name for programs, and one line for people. */
 enum MHD_Result answer_error(struct MHD_Connection *c, unsigned status_code, const char *code, const char *words);
+/* Refuses a method; allow: those of the resource, "GET, HEAD". */
+enum MHD_Result answer_no_method(struct MHD_Connection *c, const char *allow);
 /* Sends json and frees it; NULL means lack of memory, which is reported. location (may be NULL): path of a new
  * resource. */
 enum MHD_Result answer_json(struct MHD_Connection *c, unsigned status_code, cJSON *json, const char *location);

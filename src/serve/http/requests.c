@@ -17,9 +17,53 @@ typedef struct request {
     uint64_t ignored;      /* bytes of a body that is not read */
     unsigned code;         /* status of a refusal after its body; 0: none */
     const char *fault, *words;
+    const char *allow; /* methods of the resource, if another one was asked */
 } request;
 
 enum { LONGEST_IGNORED = 64 << 10 };
+
+/* ---- resources ---- */
+
+static const char PAGE[] = "/", DESCRIPTION[] = "/v1/openapi.json", STATUS[] = "/v1/status", JOBS[] = "/v1/jobs/";
+/* What follows a job's identifier. */
+static const char FILES[] = "/files/", ARCHIVE[] = "/files.zip";
+
+static const work_kind *kind_of(const char *url)
+{
+    return strncmp(url, "/v1/", 4) == 0 ? work_find(url + 4) : NULL;
+}
+
+static bool is_job(const char *url)
+{
+    return strncmp(url, JOBS, sizeof JOBS - 1) == 0;
+}
+
+/* Tells whether the rest of a job's path is that of results. */
+static bool is_results(const char *rest)
+{
+    return strcmp(rest, ARCHIVE) == 0 || strncmp(rest, FILES, sizeof FILES - 1) == 0;
+}
+
+/* Returns the methods of a resource, as in the header Allow; NULL: there is no such resource. */
+static const char *methods_of(const char *url)
+{
+    if (kind_of(url)) return "POST";
+    if (is_job(url)) return strchr(url + sizeof JOBS - 1, '/') ? "GET, HEAD" : "GET, HEAD, DELETE";
+    const bool known = strcmp(url, PAGE) == 0 || strcmp(url, DESCRIPTION) == 0 || strcmp(url, STATUS) == 0;
+    return known ? "GET, HEAD" : NULL;
+}
+
+/* Tells whether a list with commas has this word. */
+static bool has_word(const char *list, const char *word)
+{
+    const size_t length = strlen(word);
+    for (const char *at = list; *at; at += strspn(at, ", ")) {
+        const size_t next = strcspn(at, ",");
+        if (next == length && strncmp(at, word, length) == 0) return true;
+        at += next;
+    }
+    return false;
+}
 
 /* Refuses a request as soon as its body has been read. */
 static void will_refuse(request *r, unsigned code, const char *fault, const char *words)
@@ -114,44 +158,55 @@ static enum MHD_Result answer_archive(const request_site *site, struct MHD_Conne
     return answer_file(c, descriptor, bytes, "merlin.zip");
 }
 
-/* Answers requests for a job; rest: what follows /v1/jobs/. */
-static enum MHD_Result answer_job(const request_site *site, struct MHD_Connection *c, const char *rest, bool remove)
+static enum MHD_Result answer_file_of(const request_site *site, struct MHD_Connection *c, const char *id,
+                                      const char *name)
 {
-    static const char files[] = "/files/";
-    char id[STORE_ID];
     uint64_t bytes = 0;
-    snprintf(id, sizeof id, "%s", rest);
-    if (!store_is_id(id)) return no_job(c);
-    rest += STORE_ID - 1;
-    if (!*rest && remove) return jobs_remove(site->jobs, id) ? answer_nothing(c) : no_job(c);
-    if (!*rest) {
-        cJSON *told = jobs_tell(site->jobs, id);
-        return told ? answer_json(c, MHD_HTTP_OK, told, NULL) : no_job(c);
-    }
-    if (!remove && strcmp(rest, "/files.zip") == 0) return answer_archive(site, c, id);
-    if (remove || strncmp(rest, files, sizeof files - 1) != 0) return not_found(c);
-    const char *name = rest + sizeof files - 1;
     const int descriptor = jobs_open_file(site->jobs, id, name, &bytes);
     return descriptor < 0 ? not_found(c) : answer_file(c, descriptor, bytes, name);
 }
 
+/* Answers requests for results; rest: what follows the job's identifier. */
+static enum MHD_Result answer_results(const request_site *site, struct MHD_Connection *c, const char *id,
+                                      const char *rest)
+{
+    switch (jobs_look(site->jobs, id)) {
+    case JOBS_NO_JOB:
+        return no_job(c);
+    case JOBS_WAIT:
+        return answer_error(c, MHD_HTTP_CONFLICT, "not_done", "the job is not done: its files come when its state is");
+    case JOBS_WITHOUT:
+        return answer_error(c, MHD_HTTP_CONFLICT, "not_done", "the job failed or was cancelled, and has no files");
+    case JOBS_READY:
+        break;
+    }
+    if (strcmp(rest, ARCHIVE) == 0) return answer_archive(site, c, id);
+    return answer_file_of(site, c, id, rest + sizeof FILES - 1);
+}
+
+/* Answers requests for a job; rest: what follows /v1/jobs/. */
+static enum MHD_Result answer_job(const request_site *site, struct MHD_Connection *c, const char *rest, bool remove)
+{
+    char id[STORE_ID];
+    snprintf(id, sizeof id, "%s", rest);
+    if (!store_is_id(id)) return no_job(c);
+    rest += STORE_ID - 1;
+    if (!*rest && remove) return jobs_remove(site->jobs, id) ? answer_nothing(c) : no_job(c);
+    if (*rest) return is_results(rest) ? answer_results(site, c, id, rest) : not_found(c);
+    cJSON *told = jobs_tell(site->jobs, id);
+    return told ? answer_json(c, MHD_HTTP_OK, told, NULL) : no_job(c);
+}
+
 static enum MHD_Result answer_get(const request_site *site, struct MHD_Connection *c, const char *url, bool remove)
 {
-    static const char of_jobs[] = "/v1/jobs/";
-    if (strncmp(url, of_jobs, sizeof of_jobs - 1) == 0) return answer_job(site, c, url + sizeof of_jobs - 1, remove);
-    if (remove) return not_found(c);
-    if (strcmp(url, "/") == 0) return answer_text(c, "text/html; charset=utf-8", site->page, site->page_policy);
-    if (strcmp(url, "/v1/openapi.json") == 0) return answer_text(c, "application/json", site->openapi, NULL);
-    if (strcmp(url, "/v1/status") == 0) return answer_status(site, c);
+    if (is_job(url)) return answer_job(site, c, url + sizeof JOBS - 1, remove);
+    if (strcmp(url, PAGE) == 0) return answer_text(c, "text/html; charset=utf-8", site->page, site->page_policy);
+    if (strcmp(url, DESCRIPTION) == 0) return answer_text(c, "application/json", site->openapi, NULL);
+    if (strcmp(url, STATUS) == 0) return answer_status(site, c);
     return not_found(c);
 }
 
 /* ---- POST ---- */
-
-static const work_kind *kind_of(const char *url)
-{
-    return strncmp(url, "/v1/", 4) == 0 ? work_find(url + 4) : NULL;
-}
 
 /* Returns the announced length of a body; 0 if there is none. */
 static uint64_t announced(struct MHD_Connection *c)
@@ -208,7 +263,9 @@ static enum MHD_Result end_post(const request_site *site, struct MHD_Connection 
     case JOBS_FULL:
         return answer_error(c, MHD_HTTP_SERVICE_UNAVAILABLE, "busy", "too many jobs wait already: try again later");
     case JOBS_NONE:
-        return answer_error(c, MHD_HTTP_NOT_FOUND, "no_job", "the job that \"job\" names is not there, or not done");
+        return answer_error(c, MHD_HTTP_NOT_FOUND, "no_job", "the job that \"job\" names is not there, or has no maps");
+    case JOBS_EARLY:
+        return answer_error(c, MHD_HTTP_CONFLICT, "not_done", "the job that \"job\" names is not done");
     default:
         return answer_error(c, MHD_HTTP_INSUFFICIENT_STORAGE, "no_room", status_message());
     }
@@ -216,18 +273,24 @@ static enum MHD_Result end_post(const request_site *site, struct MHD_Connection 
 
 /* ---- the callbacks ---- */
 
+static enum MHD_Result refuse(struct MHD_Connection *c, const request *r)
+{
+    return r->allow ? answer_no_method(c, r->allow) : answer_error(c, r->code, r->fault, r->words);
+}
+
 /* Refuses what can be refused by a request's head. */
 static void check_head(const request_site *site, struct MHD_Connection *c, const char *url, const char *method,
                        request *r)
 {
-    const bool is_get = strcmp(method, "GET") == 0 || strcmp(method, "HEAD") == 0;
     const bool is_post = strcmp(method, "POST") == 0;
+    const char *allow = methods_of(url);
     if (r->code) return;
-    if (!is_get && !is_post && strcmp(method, "DELETE") != 0)
-        will_refuse(r, MHD_HTTP_METHOD_NOT_ALLOWED, "no_method", "GET, POST and DELETE alone are answered");
-    else if (is_post && !kind_of(url))
+    if (!allow)
         will_refuse(r, MHD_HTTP_NOT_FOUND, "not_found", "there is no such thing here: see /v1/openapi.json");
-    else if (announced(c) > (is_post ? site->limits.bytes : LONGEST_IGNORED))
+    else if (!has_word(allow, method)) {
+        will_refuse(r, MHD_HTTP_METHOD_NOT_ALLOWED, "no_method", allow);
+        r->allow = allow;
+    } else if (announced(c) > (is_post ? site->limits.bytes : LONGEST_IGNORED))
         will_refuse(r, MHD_HTTP_CONTENT_TOO_LARGE, "too_large", "the request is larger than this server takes");
 }
 
@@ -255,7 +318,7 @@ static request *begin(const request_site *site, struct MHD_Connection *c, const 
     refuse_asker(site, r, answer);
     check_head(site, c, url, method, r);
     if (r->code && !is_drained(site, c, method)) {
-        *result = answer_error(c, r->code, r->fault, r->words);
+        *result = refuse(c, r);
         free(r);
         return NULL;
     }
@@ -290,7 +353,7 @@ enum MHD_Result requests_answer(void *context, struct MHD_Connection *c, const c
         *size = 0;
         return take(site, r, data, taken) ? MHD_YES : MHD_NO;
     }
-    if (r->code) return answer_error(c, r->code, r->fault, r->words);
+    if (r->code) return refuse(c, r);
     return r->kind ? end_post(site, c, r) : answer_get(site, c, url, strcmp(method, "DELETE") == 0);
 }
 

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "base/json/json_put.h"
+#include "base/text/report.h"
 #include "serve/jobs/job_files.h"
 
 struct jobs {
@@ -138,7 +139,7 @@ static job *next(jobs *q)
 static status work_on(jobs *q, job *j)
 {
     listener t = {q, j};
-    cJSON *report = cJSON_CreateObject();
+    cJSON *report = report_begin(NULL);
     const work_context context = {.model = q->params.model,
                                   .store = q->params.store,
                                   .form = &j->form,
@@ -234,7 +235,8 @@ static jobs_answer borrow(jobs *q, const work_kind *kind, const form *f)
     if (!kind->uses || !id) return JOBS_TAKEN;
     const job *from = find(q, id);
     char have[PATH_MAX], want[PATH_MAX];
-    if (!from || from->state != JOB_DONE || !job_find_file(from, kind->uses)) return JOBS_NONE;
+    if (from && from->state != JOB_DONE) return JOBS_EARLY;
+    if (!from || !job_find_file(from, kind->uses)) return JOBS_NONE;
     store_path(q->params.store, from->form.id, STORE_OUT, kind->uses, have);
     store_path(q->params.store, f->id, STORE_IN, kind->uses, want);
     if (link(have, want) == 0) return JOBS_TAKEN;
@@ -290,6 +292,18 @@ bool jobs_remove(jobs *q, const char *id)
     tidy(q);
     pthread_mutex_unlock(&q->lock);
     return j != NULL;
+}
+
+jobs_results jobs_look(jobs *q, const char *id)
+{
+    pthread_mutex_lock(&q->lock);
+    const job *j = find(q, id);
+    const jobs_results found = !j                     ? JOBS_NO_JOB
+                               : !job_has_ended(j)    ? JOBS_WAIT
+                               : j->state == JOB_DONE ? JOBS_READY
+                                                      : JOBS_WITHOUT;
+    pthread_mutex_unlock(&q->lock);
+    return found;
 }
 
 int jobs_open_file(jobs *q, const char *id, const char *name, uint64_t *bytes)

@@ -35,7 +35,8 @@ typedef enum jobs_answer {
     JOBS_TAKEN,
     JOBS_REFUSED, /* the form is wrong: status_message() has the reason */
     JOBS_FULL,    /* too many jobs are waiting */
-    JOBS_NONE,    /* the job named by its field "job" does not exist, or has not succeeded */
+    JOBS_NONE,    /* the job named by its field "job" does not exist, or has no maps */
+    JOBS_EARLY,   /* that job is not done */
     JOBS_BROKEN,  /* an error of the server: status_message() */
 } jobs_answer;
 
@@ -47,6 +48,9 @@ bool jobs_have_room(jobs *q);
 cJSON *jobs_tell(jobs *q, const char *id);
 /* Stops a job, and removes it with its files. Returns false if there is none. */
 bool jobs_remove(jobs *q, const char *id);
+/* Tells whether a job's results can be had. */
+typedef enum jobs_results { JOBS_NO_JOB, JOBS_WAIT, JOBS_WITHOUT, JOBS_READY } jobs_results;
+jobs_results jobs_look(jobs *q, const char *id);
 /* Opens one of a job's results for reading; -1: there is none. */
 int jobs_open_file(jobs *q, const char *id, const char *name, uint64_t *bytes);
 /* Makes an archive of all of them, to be read from the descriptor. Returns false if there is no such job, or it is not

@@ -60,6 +60,15 @@ status photo_form_params(const form *f, merlin_params *params)
     return s == OK ? read_exposure(f, params) : s;
 }
 
+status photo_form_refuse(const form *f, const char *what)
+{
+    static const form_key of_photo[] = {PHOTO_KEYS, {0}};
+    for (const form_key *k = of_photo; k->name; k++)
+        if (form_value(f, k->name) || form_find_file(f, k->name))
+            return fail(MERLIN_WRONG_USE, "%s takes no %s, which is of a photo", what, k->name);
+    return OK;
+}
+
 /* ---- the photograph ---- */
 
 static status check_pixels(const work_context *w, const merlin_image *photo)

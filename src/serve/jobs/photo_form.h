@@ -21,6 +21,8 @@
 
 /* Reads the values; params.hint is that of point and box. */
 status photo_form_params(const form *f, merlin_params *params);
+/* Refuses the fields of a photograph for `what`, which has none. */
+status photo_form_refuse(const form *f, const char *what);
 status photo_form_hint(const form *f, merlin_hint *hint);
 
 /* Reads the photograph and finds its object: by the client's mask, which may be smaller than the photograph, else by

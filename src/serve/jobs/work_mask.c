@@ -5,11 +5,13 @@
 #include <string.h>
 
 #include "base/json/json_put.h"
+#include "base/warnings.h"
 #include "serve/jobs/photo_form.h"
 #include "serve/jobs/resized.h"
 #include "serve/jobs/work_kinds.h"
 
 enum { SIDE = 1280, LEAST_SIDE = 64, MOST_SIDE = 4096 };
+static const float SURE = 0.5f; /* confidence below which estimate warns, too */
 
 typedef struct mask_request {
     merlin_hint hint;
@@ -54,6 +56,12 @@ static status run(const work_context *w, const void *request)
     merlin_object object;
     status s = photo_form_read(w, &r->hint, &photo, &object);
     if (s != OK) return s;
+    warnings doubts = {0};
+    if (object.confidence < SURE)
+        warnings_add(
+            &doubts, "object_unsure",
+            "the object was found with little confidence: correct its mask, or say where it is by point or box");
+    json_put_item(w->report, "warnings", warnings_json(&doubts));
     json_put_number(w->report, "width", photo.width);
     json_put_number(w->report, "height", photo.height);
     json_put_text(w->report, "mask_source", object.source == MERLIN_MASK_GIVEN ? "given" : "found");

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* The object in other light: from maps of an earlier job, of a file, or of a photograph that is estimated first, to a
  * picture for each lamp, in a room, or in the estimated light. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/json/json_put.h"
+#include "base/lights/relit_light.h"
 #include "serve/jobs/photo_form.h"
 #include "serve/jobs/work_kinds.h"
 
@@ -80,7 +82,22 @@ static status check_source(const form *f, relight_request *r)
         return fail(MERLIN_WRONG_USE,
                     "relight wants one of photo, maps (a maps.exr) and job (an estimate that is done)");
     r->photo = form_find_file(f, "photo") != NULL;
-    return r->photo ? photo_form_params(f, &r->params) : OK;
+    return r->photo ? photo_form_params(f, &r->params) : photo_form_refuse(f, "relight of maps");
+}
+
+/* Refuses fields without what they change. */
+static status check_changes(const form *f, const relight_request *r)
+{
+    const bool room = form_find_file(f, "environment") != NULL;
+    if (form_value(f, "environment_exposure") && !room)
+        return fail(MERLIN_WRONG_USE, "environment_exposure wants an environment");
+    if (form_value(f, "rotate") && !room && !r->found)
+        return fail(MERLIN_WRONG_USE, "rotate wants an environment, or the light that was found, to turn");
+    if (r->together && r->lamp_count == 0)
+        return fail(MERLIN_WRONG_USE, "together is of the lamps of light, direction, orbit and dome");
+    if (r->together && r->how == MERLIN_BY_NETWORK)
+        return fail(MERLIN_WRONG_USE, "together goes not by network, whose decoder knows one lamp alone");
+    return OK;
 }
 
 static status check_lights(const form *f, const relight_request *r)
@@ -131,7 +148,8 @@ static status check(const form *f, const work_limits *limits, void **request)
     if (s == OK) s = form_integer(f, "side", LEAST_SIDE, MOST_SIDE, &r->side);
     if (s == OK) s = form_choice(f, "by", ways, sizeof ways / sizeof *ways, &way);
     r->how = (merlin_relighting)way;
-    return s == OK ? check_lights(f, r) : s;
+    if (s == OK) s = check_lights(f, r);
+    return s == OK ? check_changes(f, r) : s;
 }
 
 /* ---- the maps ---- */
@@ -169,6 +187,7 @@ typedef struct relight_work {
     const merlin_maps *maps;
     const merlin_environment *room;
     merlin_relighter *relighter; /* NULL: by the light that was found */
+    relit_light *seen;
 } relight_work;
 
 /* The square under these lamps or, of no asked size, in the photograph's frame. */
@@ -176,8 +195,13 @@ static status make(const relight_work *k, const merlin_lamp *lamps, int count, m
 {
     const relight_request *r = k->request;
     merlin_image square = {0};
-    if (r->found) return merlin_relight_found(k->context->model, k->maps, r->rotate, r->how, out);
+    if (r->found) {
+        status s = merlin_relight_found(k->context->model, k->maps, r->rotate, r->how, out);
+        if (s == OK) relit_light_note(k->seen, out, &k->maps->mask);
+        return s;
+    }
     status s = merlin_relighter_render_lamps(k->relighter, lamps, count, k->room, &square);
+    if (s == OK) relit_light_note(k->seen, &square, merlin_relighter_mask(k->relighter));
     if (s == OK && r->side) {
         *out = square;
         return OK;
@@ -219,10 +243,29 @@ static status prepare_captured(const relight_work *k)
     return s == OK ? merlin_relighter_set_white(k->relighter, white) : s;
 }
 
+/* Reports as the command does. */
+static void report(const relight_work *k)
+{
+    const relight_request *r = k->request;
+    cJSON *to = k->context->report;
+    const merlin_model *model = k->context->model;
+    warnings doubts;
+    merlin_maps_warnings(k->maps, &doubts);
+    if (r->lamp_count || r->found) merlin_relighting_warnings(model, k->maps, r->how, &doubts);
+    relit_light_warn_negative(merlin_environment_negative(k->room), &doubts);
+    relit_light_warn(k->seen, k->room ? "environment_exposure, or lamps of less power" : "lamps of less power",
+                     &doubts);
+    json_put_item(to, "warnings", warnings_json(&doubts));
+    json_put_text(to, "by", r->how == MERLIN_BY_NETWORK ? "network" : "brdf");
+    json_put_text(to, "model", merlin_relighting_model(model, k->maps, r->how));
+    json_put_number(to, "burnt_out", round(1e4 * k->seen->burnt_out) / 1e4);
+}
+
 static status relight(const work_context *w, const relight_request *r, const merlin_maps *maps)
 {
     const form_file *room = form_find_file(w->form, "environment");
-    relight_work k = {.context = w, .request = r, .maps = maps};
+    relit_light seen = {.pictures = 0};
+    relight_work k = {.context = w, .request = r, .maps = maps, .seen = &seen};
     merlin_environment *environment = NULL;
     char path[PATH_MAX];
     status s = OK;
@@ -233,6 +276,7 @@ static status relight(const work_context *w, const relight_request *r, const mer
     if (s == OK && !r->found) s = merlin_relighter_new(w->model, maps, r->side, r->how, &k.relighter);
     if (s == OK && k.relighter && maps->captured) s = prepare_captured(&k);
     if (s == OK) s = make_all(&k);
+    if (s == OK) report(&k);
     merlin_relighter_free(k.relighter);
     merlin_environment_free(environment);
     return s;
@@ -244,7 +288,6 @@ static status run(const work_context *w, const void *request)
     merlin_maps maps;
     status s = r->photo ? photo_form_estimate(w, &r->params, &maps) : read_maps(w, &maps);
     if (s != OK) return s;
-    json_put_text(w->report, "model", maps.model);
     s = relight(w, r, &maps);
     merlin_maps_free(&maps);
     return s;

@@ -71,6 +71,19 @@ static const form_key of_pictures[] = {{"pictures", FORM_FILE, SIZE_MAX},
                                        {0}};
 static const form_key of_photo[] = {PHOTO_KEYS, {"method", FORM_VALUE, 1}, {"keep_edges", FORM_VALUE, 1}, {0}};
 
+/* Refuses what does not go together, as the command does. */
+static status check_together(const form *f, const stereo_request *r)
+{
+    const merlin_stereo_method m = r->params.method;
+    if (r->photo && m != MERLIN_STEREO_AUTO && m != MERLIN_STEREO_NEAR && m != MERLIN_STEREO_UNCALIBRATED)
+        return fail(MERLIN_WRONG_USE,
+                    "stereo of a photo, which is relit by near lights, has the methods auto, near and "
+                    "uncalibrated");
+    if (!r->photo && m == MERLIN_STEREO_UNCALIBRATED && (form_find_file(f, "lights") || r->near_lights))
+        return fail(MERLIN_WRONG_USE, "method uncalibrated takes no lights and no near: it finds both kinds of lights");
+    return OK;
+}
+
 static status check(const form *f, const work_limits *limits, void **request)
 {
     stereo_request *r = calloc(1, sizeof *r);
@@ -79,7 +92,8 @@ static status check(const form *f, const work_limits *limits, void **request)
     r->photo = form_find_file(f, "photo") != NULL;
     status s = form_check(f, r->photo ? "stereo of a photo" : "stereo", r->photo ? of_photo : of_pictures);
     if (s == OK) s = r->photo ? photo_form_params(f, &r->photo_params) : check_pictures(f, limits);
-    return s == OK ? read_values(f, r) : s;
+    if (s == OK) s = read_values(f, r);
+    return s == OK ? check_together(f, r) : s;
 }
 
 /* ---- the work ---- */
