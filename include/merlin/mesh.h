@@ -38,6 +38,7 @@ typedef struct merlin_mesh {
     merlin_image roughness; /* texture: 1 channel, of any size; no data: 1 everywhere */
     double scale; /* scale of the positions in the scene of a GLB or USD, as viewers take a unit for a metre; 0: 1. For
                    * positions in pixels it makes the whole picture one unit large */
+    int matte;    /* 1: without gloss, as a captured surface, whose gloss was not measured */
 } merlin_mesh;
 
 /* Options; all zeros are the defaults. */

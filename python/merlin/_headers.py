@@ -167,7 +167,7 @@ Mesh = _struct("mesh", [
     ("vertex_count", c_size_t), ("triangle_count", c_size_t), ("positions", POINTER(c_float)),
     ("normals", POINTER(c_float)), ("uvs", POINTER(c_float)), ("colors", POINTER(c_float)),
     ("triangles", POINTER(c_uint32)), ("width", c_int), ("height", c_int), ("pixels", POINTER(c_uint32)),
-    ("face_normals", POINTER(c_float)), ("albedo", Image), ("roughness", Image), ("scale", c_double)])
+    ("face_normals", POINTER(c_float)), ("albedo", Image), ("roughness", Image), ("scale", c_double), ("matte", c_int)])
 MeshParams = _struct("mesh_params", [("side", c_int), ("texture_side", c_int)])
 
 # ---- view.h ----

@@ -18,6 +18,8 @@ struct staging {
     size_t kept; /* length of the part of folder's path that existed before */
     DIR *files;  /* the hidden folder, open for listing when its files are moved */
     const char *inputs[STAGING_MOST_INPUTS];
+    char **dropped; /* paths of files that are removed at the commit */
+    size_t dropped_count;
 };
 
 static bool is_input(const staging *t, const char *path)
@@ -31,6 +33,7 @@ static void staging_free(staging *t)
 {
     if (t->hidden) leftovers_forget(t->hidden);
     if (t->files) closedir(t->files);
+    file_list_free(t->dropped, t->dropped_count);
     free(t->folder);
     free(t->hidden);
     free(t);
@@ -118,6 +121,28 @@ const char *staging_path(const staging *t, const char *name, char path[PATH_MAX]
     return path;
 }
 
+status staging_drop(staging *t, const char *name)
+{
+    char **larger = realloc(t->dropped, (t->dropped_count + 1) * sizeof *larger);
+    if (larger) t->dropped = larger;
+    char *path = larger ? file_join(t->folder, name) : NULL;
+    if (!path) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
+    t->dropped[t->dropped_count++] = path;
+    return OK;
+}
+
+status staging_drop_numbered(staging *t, const char *before, const char *after)
+{
+    char name[NAME_MAX + 1];
+    status s = OK;
+    for (int i = 0; s == OK; i++) {
+        snprintf(name, sizeof name, "%s%d%s", before, i, after);
+        if (!file_is_in(t->folder, name)) return OK;
+        s = staging_drop(t, name);
+    }
+    return s;
+}
+
 static bool is_dots(const char *name)
 {
     return strcmp(name, ".") == 0 || strcmp(name, "..") == 0;
@@ -196,6 +221,26 @@ static status check_files(staging *t, staged_files *written)
                     : fail_by_errno(MERLIN_CANNOT_WRITE, "cannot write into %s", t->folder);
 }
 
+/* Keeps only those files marked that are there and are not replaced; inputs and folders stay, too. */
+static void choose_dropped(staging *t)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < t->dropped_count; i++) {
+        char *path = t->dropped[i];
+        if (file_is_in(t->hidden, file_name_of(path)) || is_input(t, path) || file_is_folder(path))
+            free(path);
+        else
+            t->dropped[kept++] = path;
+    }
+    t->dropped_count = kept;
+}
+
+static void remove_dropped(const staging *t)
+{
+    for (size_t i = 0; i < t->dropped_count; i++)
+        (void)unlink(t->dropped[i]);
+}
+
 /* Checks all folders before it moves any file. */
 status staging_commit_all(staging *const *t, int count, staged_files *written)
 {
@@ -203,7 +248,11 @@ status staging_commit_all(staging *const *t, int count, staged_files *written)
     for (int i = 0; i < count && s == OK; i++)
         s = check_files(t[i], written);
     for (int i = 0; i < count && s == OK; i++)
+        choose_dropped(t[i]);
+    for (int i = 0; i < count && s == OK; i++)
         s = over_files(t[i], false, NULL);
+    for (int i = 0; i < count && s == OK; i++)
+        remove_dropped(t[i]);
     if (s == OK && written && written->count > 1)
         qsort(written->at, written->count, sizeof *written->at, compare_names);
     for (int i = count - 1; i >= 0; i--) {

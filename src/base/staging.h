@@ -28,11 +28,17 @@ status staging_begin(const char *folder, const char *const *inputs, staging **ou
 const char *staging_folder(const staging *t);
 /* Composes the path at which to write the future folder/name, and returns it. May be called from any thread. */
 const char *staging_path(const staging *t, const char *name, char path[PATH_MAX]);
+/* Marks a file of the folder, which an earlier run of the same writer made, to be removed at the commit unless it is
+ * written again. It may be missing. */
+status staging_drop(staging *t, const char *name);
+/* Marks BEFORE0AFTER, BEFORE1AFTER and so on, as far as the folder has them without a gap. */
+status staging_drop_numbered(staging *t, const char *before, const char *after);
 /* The library's own list of what was written, by a short name for the inside. */
 typedef merlin_files staged_files;
 
-/* Moves all files into the folder, replacing those of the same names, adds their paths to *written unless that is NULL,
- * and frees t. MERLIN_CANNOT_WRITE, with nothing moved, if a folder or one of the inputs is in the way. */
+/* Moves all files into the folder, replacing those of the same names, removes those that were marked, adds their paths
+ * to *written unless that is NULL, and frees t. MERLIN_CANNOT_WRITE, with nothing moved, if a folder or one of the
+ * inputs is in the way. */
 status staging_commit(staging *t, staged_files *written);
 /* Commits several folders at once: nothing is moved if anything is in the way in any of them. */
 status staging_commit_all(staging *const *t, int count, staged_files *written);

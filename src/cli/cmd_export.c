@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/progress.h"
 #include "base/text/report.h"
+#include "base/warnings.h"
 #include "cli/commands.h"
 #include "cli/maps_folder.h"
 #include "cli/written.h"
@@ -31,7 +32,7 @@ static const char help[] =
     "                         height32    height.exr, 32 bits, in widths of the square\n"
     "                         alpha       alpha.png, how much of a pixel the object covers\n"
     "                         materialx   material.mtlx, with albedo, normal and roughness\n"
-    "                         all         all of these\n"
+    "                         all         all of these; with --normal-y down without materialx\n"
     "      --normal-y WAY   up (default): green is larger where the surface faces upwards (OpenGL, Blender, Unity);\n"
     "                       down: downwards (DirectX, Unreal)\n"
     "      --size N         pixels a side, 64 to 8192 (default: the square's, at most 2048)\n"
@@ -110,6 +111,13 @@ static status parse(int *argc, char ***argv, request *r)
     return maps_folder_take(*argc, *argv, &r->input);
 }
 
+static void find_doubts(const request *r, warnings *doubts)
+{
+    if (r->params.maps == MERLIN_EXPORT_ALL && r->params.normal_down)
+        warnings_add(doubts, "materialx_left_out",
+                     "material.mtlx is left out, as MaterialX has normals whose green is up alone");
+}
+
 static status announce(const request *r, const char *output, const merlin_export_facts *facts,
                        const merlin_files *written, double seconds)
 {
@@ -117,8 +125,11 @@ static status announce(const request *r, const char *output, const merlin_export
     if (!r->json && !r->quiet)
         printf("%s: %s, %d x %d, relief %.3f of its width (%.2f s, %s)\n", r->input, output, facts->side, facts->side,
                (double)facts->relief, seconds, written_words(written, amount));
+    warnings doubts = {0};
+    find_doubts(r, &doubts);
+    if (!r->quiet) warnings_print(&doubts, "export", r->input, WARNINGS_MOST);
     if (!r->json) return OK;
-    cJSON *report = report_begin(&(warnings){0});
+    cJSON *report = report_begin(&doubts);
     json_put_text(report, "input", r->input);
     json_line_files(report, output, written);
     json_put_number(report, "side", facts->side);

@@ -19,6 +19,7 @@
 #include "image/resize.h"
 #include "image/write/write.h"
 #include "merlin/export.h"
+#include "optics/brdf.h"
 
 /* Size of the surface whose horizon is computed, as an estimate's shape has no finer detail, and the largest size at
  * which occlusion, which is smooth, is computed. */
@@ -194,7 +195,7 @@ static status write_map(export_job *j, merlin_export_map which)
     case MERLIN_EXPORT_ALPHA:
         return img_write_png(file_of(j, "alpha.png", path), &j->of.mask, IMG_LINEAR8);
     case MERLIN_EXPORT_MATERIALX:
-        return materialx_write(file_of(j, "material.mtlx", path));
+        return materialx_write(file_of(j, "material.mtlx", path), j->maps->captured);
     case MERLIN_EXPORT_ALL:
         break;
     }
@@ -209,6 +210,7 @@ static status write_facts(export_job *j)
     json_put_number(o, "side", j->facts.side);
     json_put_number(o, "relief", (double)j->facts.relief);
     json_put_number(o, "width", (double)j->facts.width);
+    json_put_number(o, "f0", j->maps->captured ? 0 : round(1e4 * (double)BRDF_F0) / 1e4);
     json_put_text(o, "normal_y", j->normal_down ? "down" : "up");
     json_put_item(o, "maps", j->list);
     char *text = json_print(o);
@@ -228,7 +230,7 @@ static status check(const merlin_export_params *p)
     if (p->side && (p->side < MERLIN_EXPORT_LEAST_SIDE || p->side > MERLIN_EXPORT_MOST_SIDE))
         return fail(MERLIN_WRONG_USE, "a side of %d pixels is not between %d and %d", p->side, MERLIN_EXPORT_LEAST_SIDE,
                     MERLIN_EXPORT_MOST_SIDE);
-    if (p->maps & MERLIN_EXPORT_MATERIALX && p->normal_down)
+    if (p->maps & MERLIN_EXPORT_MATERIALX && p->normal_down && p->maps != MERLIN_EXPORT_ALL)
         return fail(MERLIN_WRONG_USE, "MaterialX has normals whose green is up alone: material.mtlx cannot go with "
                                       "normals whose green is down (leave one of the two out)");
     return OK;
@@ -286,6 +288,7 @@ merlin_status merlin_maps_export(const merlin_maps *maps, const merlin_export_pa
     if (s == OK) s = check(how);
     if (s == OK) s = maps_check(maps);
     if (s != OK) return s;
+    if (j.normal_down) j.wanted &= ~(unsigned)MERLIN_EXPORT_MATERIALX;
     if (j.wanted & MERLIN_EXPORT_MATERIALX) j.wanted |= OF_MATERIALX;
     s = check_folder(&j, folder);
     if (s == OK) s = compute(&j, how->side ? how->side : min_int(maps->crop.side, MERLIN_EXPORT_SIDE));

@@ -24,7 +24,7 @@ static double index_of_refraction(void)
 
 static void print_material(FILE *f, const void *context)
 {
-    (void)context;
+    const bool matte = *(const bool *)context;
     fputs("<?xml version=\"1.0\"?>\n<materialx version=\"1.38\" colorspace=\"lin_rec709\">\n", f);
     print_image(f, "albedo", "color3", "albedo.png", "srgb_texture");
     print_image(f, "roughness", "float", "roughness.png", NULL);
@@ -35,9 +35,9 @@ static void print_material(FILE *f, const void *context)
           "  <standard_surface name=\"surface\" type=\"surfaceshader\">\n"
           "    <input name=\"base\" type=\"float\" value=\"1\"/>\n"
           "    <input name=\"base_color\" type=\"color3\" nodename=\"albedo\"/>\n"
-          "    <input name=\"specular\" type=\"float\" value=\"1\"/>\n"
           "    <input name=\"specular_roughness\" type=\"float\" nodename=\"roughness\"/>\n",
           f);
+    fprintf(f, "    <input name=\"specular\" type=\"float\" value=\"%d\"/>\n", matte ? 0 : 1);
     fprintf(f, "    <input name=\"specular_IOR\" type=\"float\" value=\"%.4f\"/>\n", index_of_refraction());
     fputs("    <input name=\"normal\" type=\"vector3\" nodename=\"normal\"/>\n"
           "  </standard_surface>\n"
@@ -48,7 +48,7 @@ static void print_material(FILE *f, const void *context)
           f);
 }
 
-status materialx_write(const char *path)
+status materialx_write(const char *path, bool matte)
 {
-    return file_print(path, print_material, NULL);
+    return file_print(path, print_material, &matte);
 }

@@ -4,9 +4,12 @@
 #ifndef MERLIN_EXPORT_MATERIALX_H
 #define MERLIN_EXPORT_MATERIALX_H
 
+#include <stdbool.h>
+
 #include "base/status.h"
 
-/* Writes the material of a plane with albedo.png, normal.png and roughness.png next to the file, atomically. */
-status materialx_write(const char *path);
+/* Writes the material of a plane with albedo.png, normal.png and roughness.png next to the file, atomically; matte:
+ * without gloss. */
+status materialx_write(const char *path, bool matte);
 
 #endif

@@ -212,11 +212,13 @@ static status write_jpeg(const char *path, const rti_planes *planes, int first, 
     return s;
 }
 
-static status write_all(const merlin_rti *rti, const made *m, staging *files)
+/* later: whether it replaces an earlier one. */
+static status write_all(const merlin_rti *rti, const made *m, bool later, staging *files)
 {
     char name[32], path[PATH_MAX];
     const rti_components *components = rti->pictures ? &m->components : NULL;
     status s = rti_write_info(staging_path(files, "info.json", path), rti, &m->planes, components);
+    if (s == OK && later) s = staging_drop_numbered(files, "plane_", ".jpg"); /* it may have had more */
     for (int k = 0; k < m->planes.planes / 3 && s == OK; k++) {
         snprintf(name, sizeof name, "plane_%d.jpg", k);
         s = write_jpeg(staging_path(files, name, path), &m->planes, 3 * k, rti->how.quality);
@@ -233,7 +235,7 @@ merlin_status merlin_rti_write(const merlin_rti *rti, const char *folder, merlin
     if (s == OK) s = make(rti, false, &m);
     if (s == OK) s = staging_begin(folder, NULL, &files);
     if (s == OK) {
-        s = write_all(rti, &m, files);
+        s = write_all(rti, &m, file_is_in(folder, "info.json"), files);
         s = s == OK ? staging_commit(files, written) : staging_abort(files, s);
     }
     made_free(&m);

@@ -21,6 +21,7 @@ merlin_status merlin_mesh_from_surface(const merlin_surface *surface, merlin_mes
                                 .albedo = &albedo,
                                 .camera = surface->camera};
     if (s == OK) s = surface_mesh_new(&source, out);
+    out->matte = 1;
     img_free(&albedo);
     return s;
 }

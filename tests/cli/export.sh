@@ -40,7 +40,18 @@ export_maps cup.merlin -q -o quiet >said && [ ! -s said ] || complain "-q says s
 echo "a captured surface"
 succeeds dome "$MERLIN" relight cup.merlin --dome 8 --lp --matte -o dome
 succeeds surface "$MERLIN" stereo dome -o surface
-succeeds '^surface: surface/export, 128 x 128, ' export_maps surface --size 128
+succeeds '^surface: surface/export, 128 x 128, ' export_maps surface --size 128 --maps materialx
+grep -q 'name="specular" type="float" value="0"' surface/export/material.mtlx || complain "a captured surface has gloss"
+grep -q 'name="specular" type="float" value="1"' all/material.mtlx || complain "a photograph has no gloss"
+grep -q '"f0":[[:space:]]*0,' surface/export/export.json || complain "export.json has gloss: $(cat surface/export/export.json)"
+grep -q '"f0":[[:space:]]*0.05,' all/export.json || complain "export.json has no gloss: $(cat all/export.json)"
+grep -aq '"KHR_materials_specular":{"specularFactor":0}' surface/mesh.glb || complain "a captured surface's mesh has gloss"
+succeeds . "$MERLIN" stereo dome --mesh dome.usda -o surface
+grep -q 'inputs:ior = 1.0000' dome.usda || complain "a captured surface has gloss in USD"
+succeeds '"code":"materialx_left_out"' export_maps cup.merlin --maps all --normal-y down --size 128 -o all_down --json
+grep -q 'cup.merlin: material.mtlx is left out' stderr || complain "no word: $(cat stderr)"
+[ "$(files_of all_down)" = "albedo.png alpha.png ao.png export.json height.exr height.png normal.png orm.png roughness.png smoothness.png" ] ||
+    complain "other files: $(files_of all_down)"
 
 echo "bad input gets one line, and nothing is half-written"
 refuses 2 'no folder of maps given' export_maps

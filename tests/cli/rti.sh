@@ -44,6 +44,13 @@ succeeds disc.merlin/rti relight disc.merlin --dome 9 --rti hsh
 present disc.merlin/rti/info.json disc.merlin/rti/plane_8.jpg
 absent disc.merlin/rti/dome_000.png
 
+echo "planes of an earlier one with more are removed, and nothing else"
+touch disc.merlin/rti/plane_10.jpg disc.merlin/rti/mine.jpg
+succeeds disc.merlin/rti relight disc.merlin --dome 9 --rti lrgb
+present disc.merlin/rti/plane_2.jpg
+absent disc.merlin/rti/plane_{3..8}.jpg
+[ -e disc.merlin/rti/plane_10.jpg ] && [ -e disc.merlin/rti/mine.jpg ] || complain "others' files went: $(ls disc.merlin/rti)"
+
 echo "and a file for RTIViewer"
 for kind in ptm lrgb; do
     succeeds "$kind.ptm" relight disc.merlin --dome 40 --rti $kind --exposure 0 -o $kind.ptm

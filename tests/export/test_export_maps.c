@@ -164,7 +164,12 @@ static void materialx_brings_the_files_that_it_names(void **state)
     assert_true(file_is_in(own, "albedo.png") && file_is_in(own, "normal.png") && file_is_in(own, "roughness.png"));
     assert_true(file_is_in(own, "material.mtlx") && file_is_in(own, "export.json"));
     merlin_files_free(&written);
+    const merlin_export_params all_down = {.maps = MERLIN_EXPORT_ALL, .normal_down = 1};
+    char *down = file_join(folder, "all_down");
+    assert_int_equal(merlin_maps_export(&m, &all_down, down, NULL, NULL), OK);
+    assert_true(file_is_in(down, "orm.png") && !file_is_in(down, "material.mtlx"));
     merlin_maps_free(&m);
+    free(down);
     free(own);
 }
 

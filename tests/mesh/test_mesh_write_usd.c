@@ -73,7 +73,12 @@ static void geometry_is_the_mesh_s(void **state)
     expect(text, "float3[] extent = [(-1, -1, -2), (1, 1, -1.5)]\n");
     /* without pictures it is matte and grey */
     expect(text, "float inputs:roughness = 1\n");
+    expect(text, "float inputs:ior = 1.5760\n");
     assert_null(strstr(text, "UsdUVTexture"));
+    free(text);
+    m.matte = 1;
+    text = written(&m, "quad.usda", 1);
+    expect(text, "float inputs:ior = 1.0000\n");
     free(text);
 }
 

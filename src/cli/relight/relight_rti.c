@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "base/file.h"
 #include "cli/relight/relight_parts.h"
 
 static const char *const names[] = {
@@ -82,6 +83,9 @@ status relight_write_rti(relight_work *w)
     status s = OK;
     for (int i = 0; i < w->job->dome.count && s == OK; i++)
         s = add_light(w, i, &rti);
+    /* an earlier one may have had more planes */
+    if (s == OK && !file && file_is_in(w->job->output, "info.json"))
+        s = staging_drop_numbered(w->staging, "plane_", ".jpg");
     if (s == OK)
         s = file ? merlin_rti_write_ptm(rti, staging_path(w->staging, file, path))
                  : merlin_rti_write(rti, staging_folder(w->staging), NULL);

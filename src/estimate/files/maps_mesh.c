@@ -35,6 +35,7 @@ static status make(const merlin_maps *maps, int side, int texture_side, merlin_m
                                 .camera = pinhole_of(side, side, surface_lens(&shape).fov),
                                 .slant = surface_lens(&shape).slant};
     if (s == OK) s = surface_mesh_new(&source, out);
+    out->matte = maps->captured;
     surface_free(&shape);
     img_free(&texture);
     return s;

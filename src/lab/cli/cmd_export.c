@@ -48,6 +48,8 @@ typedef struct network_file {
     model_part part;
 } network_file;
 
+#define LIST "networks.json"
+
 static const network_file network_files[] = {
     {"maps.onnx", "From one photograph of an object to its maps, and the light it was taken under", MODEL_MAPS},
     {"bounces.onnx", "From direct light and maps to what light does between the object's parts", MODEL_INDIRECT},
@@ -127,9 +129,15 @@ static status write_list(const export_job *job, cJSON *list)
 {
     char path[PATH_MAX], *text = json_print(list);
     if (!text) return fail(MERLIN_NO_MEMORY, "no memory for networks.json");
-    status s = file_write(staging_path(job->files, "networks.json", path), text, strlen(text));
+    status s = file_write(staging_path(job->files, LIST, path), text, strlen(text));
     free(text);
     return s;
+}
+
+/* Removes a network that another model had, by its list, and that this one does not have. */
+static status drop_earlier(const export_job *job, const char *name)
+{
+    return file_is_in(job->asked->output, LIST) ? staging_drop(job->files, name) : OK;
 }
 
 static status export_all(export_job *job, staged_files *written)
@@ -142,7 +150,8 @@ static status export_all(export_job *job, staged_files *written)
     json_put_number(list, "size", job->asked->size);
     job->networks = json_put_array(list, "networks");
     for (int i = 0; s == OK && i < NETWORKS; i++)
-        if (has_part(&job->config, network_files[i].part)) s = export_network(job, &network_files[i]);
+        s = has_part(&job->config, network_files[i].part) ? export_network(job, &network_files[i])
+                                                          : drop_earlier(job, network_files[i].name);
     if (s == OK) s = write_list(job, list);
     cJSON_Delete(list);
     return s == OK ? staging_commit(job->files, written) : staging_abort(job->files, s);

@@ -34,6 +34,7 @@ typedef struct glb {
     part parts[MOST_PARTS];
     int count;
     float *tangent;
+    bool matte;
     char *albedo, *normal, *roughness; /* PNG files in memory, or NULL */
     int albedo_part, normal_part, roughness_part, tangent_part;
     double scale; /* of the scene: viewers take a unit for a metre */
@@ -203,6 +204,14 @@ static void put_texture(cJSON *root, cJSON *user, const char *name, int picture)
     json_put_number(json_put_object(user, name), "index", number);
 }
 
+/* Takes the gloss away, which is that of a dielectric otherwise. */
+static void put_matte(cJSON *root, cJSON *material)
+{
+    static const char name[] = "KHR_materials_specular";
+    json_put_number(json_put_object(json_put_object(material, "extensions"), name), "specularFactor", 0);
+    json_append_text(json_put_array(root, "extensionsUsed"), name);
+}
+
 static void put_material(cJSON *root, const glb *g)
 {
     cJSON *material = json_append_object(json_put_array(root, "materials"));
@@ -214,6 +223,7 @@ static void put_material(cJSON *root, const glb *g)
     put_texture(root, pbr, "metallicRoughnessTexture", g->roughness_part);
     put_texture(root, material, "normalTexture", g->normal_part);
     json_put_bool(material, "doubleSided", true);
+    if (g->matte) put_matte(root, material);
 }
 
 static void put_scene(cJSON *root, const glb *g)
@@ -306,7 +316,12 @@ status mesh_write_glb(const char *path, const merlin_mesh *m)
         return fail(MERLIN_BAD_INPUT,
                     "cannot write %s: the surface has no triangle; its mask is too thin, or depth jumps everywhere",
                     path);
-    glb g = {.albedo_part = -1, .normal_part = -1, .roughness_part = -1, .tangent_part = -1, .scale = 1};
+    glb g = {.matte = m->matte != 0,
+             .albedo_part = -1,
+             .normal_part = -1,
+             .roughness_part = -1,
+             .tangent_part = -1,
+             .scale = 1};
     if (m->scale > 0) g.scale = m->scale;
     add_geometry(&g, m);
     status s = m->face_normals ? add_tangents(&g, m) : OK;

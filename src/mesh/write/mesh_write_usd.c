@@ -119,7 +119,7 @@ static void print_texture(FILE *f, const char *name, const char *file, const cha
 
 static void print_surface(FILE *f, const usd *u)
 {
-    const double root = sqrt((double)BRDF_F0);
+    const double root = u->mesh->matte ? 0 : sqrt((double)BRDF_F0);
     fputs("        def Shader \"PreviewSurface\"\n        {\n"
           "            uniform token info:id = \"UsdPreviewSurface\"\n"
           "            float inputs:metallic = 0\n",

@@ -28,6 +28,14 @@ else
     echo "python3-onnx is missing: whether the networks are valid ONNX was not checked"
 fi
 
+# Another model without a decoder takes that of the earlier one away, by its list; and nothing else.
+cp "$scratch/any/relight.onnx" "$scratch/any/mine.onnx"
+succeeds "maps.onnx" "$MERLIN_LAB" export merlin-any -o "$scratch/any"
+[[ ! -e $scratch/any/relight.onnx && -s $scratch/any/mine.onnx ]] || complain "another model's networks: $(ls "$scratch/any")"
+mkdir "$scratch/foreign" && echo mine >"$scratch/foreign/relight.onnx"
+succeeds "maps.onnx" "$MERLIN_LAB" export merlin-any -o "$scratch/foreign"
+[[ $(cat "$scratch/foreign/relight.onnx") == mine ]] || complain "a file that no list names was removed"
+
 refuses 2 "no folder to write" "$MERLIN_LAB" export "$scratch/weights.safetensors"
 refuses 2 "not a multiple of 32" "$MERLIN_LAB" export "$scratch/weights.safetensors" --size 100 -o "$scratch/no"
 refuses 2 "--size wants" "$MERLIN_LAB" export "$scratch/weights.safetensors" --size 1024 -o "$scratch/no"
