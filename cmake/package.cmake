@@ -12,16 +12,24 @@ install(TARGETS merlin-launch)
 install(DIRECTORY python/merlin DESTINATION lib/python3/dist-packages
   FILES_MATCHING PATTERN "*.py" PATTERN py.typed PATTERN __pycache__ EXCLUDE)
 
-# What libraries that are loaded by name are packaged as: their links do not show them.
-set(loaded)
-foreach(file ${VIPS_FILE} ${LIBRAW_FILE} ${CHOLMOD_FILE} ${MICROHTTPD_FILE} ${MERLIN_FONT})
-  file(REAL_PATH ${file} file)
-  execute_process(COMMAND dpkg-query -S ${file} OUTPUT_VARIABLE owner OUTPUT_STRIP_TRAILING_WHITESPACE
-    COMMAND_ERROR_IS_FATAL ANY)
-  string(REGEX REPLACE ":.*" "" owner ${owner})
-  list(APPEND loaded ${owner})
-endforeach()
-list(JOIN loaded ", " loaded)
+# packages_of(OUT files...): the packages that the files are from, separated by commas.
+function(packages_of out)
+  set(owners)
+  foreach(file ${ARGN})
+    file(REAL_PATH ${file} file)
+    execute_process(COMMAND dpkg-query -S ${file} OUTPUT_VARIABLE owner OUTPUT_STRIP_TRAILING_WHITESPACE
+      COMMAND_ERROR_IS_FATAL ANY)
+    string(REGEX REPLACE ":.*" "" owner ${owner})
+    list(APPEND owners ${owner})
+  endforeach()
+  list(JOIN owners ", " owners)
+  set(${out} ${owners} PARENT_SCOPE)
+endfunction()
+
+# What libraries that are loaded by name are packaged as: their links do not show them. Videos alone need FFmpeg's, with
+# all that they bring.
+packages_of(loaded ${VIPS_FILE} ${LIBRAW_FILE} ${CHOLMOD_FILE} ${MICROHTTPD_FILE} ${MERLIN_FONT})
+packages_of(for_videos ${AVFORMAT_FILE} ${AVCODEC_FILE} ${AVUTIL_FILE} ${SWSCALE_FILE})
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME merlin)
@@ -35,7 +43,7 @@ set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_CURRENT_BINARY_DIR})
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "${loaded}")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-numpy")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "python3-numpy, ${for_videos}")
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)

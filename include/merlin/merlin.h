@@ -18,6 +18,7 @@
  *     image.h        pixels
  *     pictures.h     sheets and animations
  *     photos.h       the photographs of a folder, and their masks
+ *     frames.h       frames of a video or of numbered pictures
  *     camera.h       lenses
  *     warnings.h     what one should know about a result
  *     files.h        files that were written or skipped
@@ -54,6 +55,7 @@
 #include <merlin/estimate.h>
 #include <merlin/export.h>
 #include <merlin/files.h>
+#include <merlin/frames.h>
 #include <merlin/image.h>
 #include <merlin/lights.h>
 #include <merlin/maps.h>

@@ -7,8 +7,8 @@ offset, size, constant and function with it, so that a header that changes break
 from __future__ import annotations
 
 import ctypes
-from ctypes import CFUNCTYPE, POINTER, c_char, c_char_p, c_double, c_float, c_int, c_size_t, c_ssize_t, c_uint
-from ctypes import c_int64, c_uint32, c_uint64, c_void_p
+from ctypes import CFUNCTYPE, POINTER, c_char, c_char_p, c_double, c_float, c_int, c_long, c_size_t, c_ssize_t
+from ctypes import c_int64, c_uint, c_uint32, c_uint64, c_void_p
 from typing import Any, Dict, List, Tuple
 
 floats3 = c_float * 3
@@ -93,6 +93,13 @@ Photos = _struct("photos", [("at", POINTER(PhotoFile)), ("count", c_size_t), ("s
 
 PNG, JPEG = range(2)
 Tile = _struct("tile", [("label", c_char_p), ("picture", POINTER(Image))])
+
+# ---- frames.h ----
+
+FramesHead = _struct("frames_head", [
+    ("width", c_int), ("height", c_int), ("video", c_int), ("rate", c_double), ("count", c_long), ("missing", c_long),
+    ("first_gap", c_long), ("interlaced", c_int)])
+Frame = _struct("frame", [("image", Image), ("mask", Image), ("number", c_long), ("path", c_char_p)])
 
 # ---- lights.h ----
 
@@ -207,6 +214,16 @@ FUNCTIONS: Dict[str, Tuple[Any, List[Any]]] = {
     "mask_find": (c_int, [c_char_p, _at(c_void_p)]),
     "masks_find": (c_int, [c_char_p, _at(c_char_p), c_size_t, _at(c_void_p)]),
     "mask_is_name": (c_int, [c_char_p]),
+    "frames_are": (c_int, [c_char_p]),
+    "frames_open": (c_int, [c_char_p, c_char_p, _out]),
+    "frames_open_pictures": (c_int, [_at(c_char_p), c_size_t, c_char_p, _out]),
+    "frames_about": (_at(FramesHead), [_handle]),
+    "frames_next": (c_int, [_handle, _at(Frame)]),
+    "frame_free": (None, [_at(Frame)]),
+    "frames_close": (None, [_handle]),
+    "video_create": (c_int, [c_char_p, c_int, c_int, c_double, _out]),
+    "video_add": (c_int, [_handle, _at(Image)]),
+    "video_finish": (c_int, [_handle, c_int]),
     "image_resize": (c_int, [_at(Image), c_int, c_int, _at(Image)]),
     "image_encode": (c_int, [_at(Image), c_int, _at(c_void_p), _at(c_size_t)]),
     "mask_write": (c_int, [_at(Image), c_char_p]),
