@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Adam (Kingma & Ba 2015, algorithm 1) with clipping by the gradients' global norm (Pascanu et al. 2013). */
+/* Adam (Kingma & Ba 2015, algorithm 1) with clipping by the gradients' global norm (Pascanu et al. 2013) and decoupled
+ * weight decay (Loshchilov & Hutter 2019, algorithm 2). */
 #include "nn/adam_step.h"
 
 #include <math.h>
@@ -22,6 +23,8 @@ status nn_adam_new(nn_params *params, const nn_adam_options *options, nn_adam **
         return fail(MERLIN_WRONG_USE, "Adam's betas must be at least 0 and below 1");
     if (!(options->epsilon > 0 && options->clip_norm >= 0))
         return fail(MERLIN_WRONG_USE, "Adam's epsilon must be positive and its clipping norm at least 0");
+    if (!(options->weight_decay >= 0 && options->weight_decay <= 1))
+        return fail(MERLIN_WRONG_USE, "Adam's weight decay must be from 0 to 1");
     nn_adam *adam = calloc(1, sizeof *adam);
     float *moments = calloc(2 * nn_params_values(params) + 1, sizeof *moments);
     if (!adam || !moments) {
@@ -77,6 +80,7 @@ status nn_adam_step(nn_adam *adam, float learning_rate)
         nn_param *p = nn_params_at(adam->params, i);
         if (!p->gradient) continue;
         step.learning_rate = learning_rate * p->learning_rate_scale;
+        step.kept = p->decays ? 1 - step.learning_rate * adam->options.weight_decay : 1;
         adam->device->adam(&step, p->count, p->value, p->gradient, nn_adam_moment(adam, i, 1),
                            nn_adam_moment(adam, i, 2));
     }

@@ -7,6 +7,7 @@ typedef struct adam_step {
     float learning_rate, beta1, beta2, epsilon;
     float correction1, correction2; /* 1 - beta^t */
     float gradient_scale;           /* factor from clipping */
+    float kept;                     /* share of the value that decay leaves, before the step */
 } adam_step;
 
 #endif

@@ -42,6 +42,7 @@ static status fill_step(compilation *c, int index)
                       .compute = c->low.options.type,
                       .filtering = c->low.options.filtering,
                       .train = train,
+                      .group = c->low.options.group > 0 ? c->low.options.group : 1,
                       .momentum = NN_NORM_MOMENTUM,
                       .relu = from->relu,
                       .inputs = head->node->inputs + (from->beside >= 0),

@@ -31,6 +31,7 @@ struct nn_step {
     nn_filtering filtering;
     bool train, relu; /* relu: applied to the result */
     bool backs;       /* has a backward pass */
+    int group;        /* pictures of each object */
     float momentum;   /* for batch norm's running statistics */
     int inputs;       /* 2 for a convolution without training to whose result the second input is added before ReLU */
     nn_tensor in[NN_MAX_INPUTS], out;

@@ -32,7 +32,7 @@ status graph_check(const nn_graph *g)
     return g->error == OK ? OK : fail(g->error, "%s", g->message);
 }
 
-__attribute__((format(printf, 2, 3))) static nn_node *reject(nn_graph *g, const char *format, ...)
+nn_node *graph_reject(nn_graph *g, const char *format, ...)
 {
     if (g->error == OK) {
         g->error = MERLIN_WRONG_USE;
@@ -65,14 +65,20 @@ static bool reserve(void **array, int count, int *capacity, size_t size)
     return true;
 }
 
-/* Appends a node that takes channels, reduction and precision from its first input. */
-static nn_node *append(nn_graph *g, nn_op op, nn_node *const *in, int inputs)
+static bool check_inputs(nn_graph *g, nn_op op, nn_node *const *in, int inputs, bool mixed)
 {
-    if (!g || g->error != OK) return NULL;
     for (int i = 0; i < inputs; i++) {
-        if (!in[i]) return reject(g, "%s: input %d is NULL", op_name(op), i);
-        if (in[i]->graph != g) return reject(g, "%s: input %d belongs to another graph", op_name(op), i);
+        if (!in[i]) return graph_reject(g, "%s: input %d is NULL", op_name(op), i);
+        if (in[i]->graph != g) return graph_reject(g, "%s: input %d belongs to another graph", op_name(op), i);
+        if (!mixed && in[i]->of_object != in[0]->of_object)
+            return graph_reject(g, "%s: inputs 0 and %d are of pictures and of objects", op_name(op), i);
     }
+    return true;
+}
+
+nn_node *graph_append(nn_graph *g, nn_op op, nn_node *const *in, int inputs, bool mixed)
+{
+    if (!g || g->error != OK || !check_inputs(g, op, in, inputs, mixed)) return NULL;
     if (!reserve((void **)&g->nodes, g->count, &g->capacity, sizeof(nn_node *))) return out_of_memory(g);
     nn_node *node = calloc(1, sizeof *node);
     if (!node) return out_of_memory(g);
@@ -86,9 +92,15 @@ static nn_node *append(nn_graph *g, nn_op op, nn_node *const *in, int inputs)
         node->channels = in[0]->channels;
         node->reduction = in[0]->reduction;
         node->is_float = in[0]->is_float;
+        node->of_object = in[0]->of_object;
     }
     g->nodes[g->count++] = node;
     return node;
+}
+
+static nn_node *append(nn_graph *g, nn_op op, nn_node *const *in, int inputs)
+{
+    return graph_append(g, op, in, inputs, false);
 }
 
 static nn_node *append1(nn_graph *g, nn_op op, nn_node *x)
@@ -102,17 +114,16 @@ static bool same_name_space(nn_op a, nn_op b)
     return op_is_loss(a) == op_is_loss(b);
 }
 
-/* Names a node; parameters, inputs and losses each have a space of names of their own. */
-static nn_node *give_name(nn_node *node, const char *name)
+nn_node *graph_give_name(nn_node *node, const char *name)
 {
     if (!node) return NULL;
     nn_graph *g = node->graph;
-    if (!name || !*name) return reject(g, "%s: a name is needed", op_name(node->op));
+    if (!name || !*name) return graph_reject(g, "%s: a name is needed", op_name(node->op));
     for (int i = 0; i < node->index; i++) {
         const nn_node *other = g->nodes[i];
         if (other->name && same_name_space(node->op, other->op) && strcmp(other->name, name) == 0)
-            return reject(g, "%s: the name \"%s\" is already taken by a %s", op_name(node->op), name,
-                          op_name(other->op));
+            return graph_reject(g, "%s: the name \"%s\" is already taken by a %s", op_name(node->op), name,
+                                op_name(other->op));
     }
     node->name = strdup(name);
     return node->name ? node : out_of_memory(g);
@@ -121,25 +132,26 @@ static nn_node *give_name(nn_node *node, const char *name)
 nn_node *nn_input(nn_graph *g, const char *name, int channels, int reduction)
 {
     if (!g || g->error != OK) return NULL;
-    if (channels < 1 || reduction < 0) return reject(g, "input: \"%s\" needs channels and a reduction", name);
+    if (channels < 1 || reduction < NN_POINTS)
+        return graph_reject(g, "input: \"%s\" needs channels and a reduction", name);
     nn_node *node = append(g, OP_INPUT, NULL, 0);
     if (!node) return NULL;
     node->channels = channels;
     node->reduction = reduction;
     node->is_float = true;
-    return give_name(node, name);
+    return graph_give_name(node, name);
 }
 
 void nn_output(nn_graph *g, nn_node *x, const char *name)
 {
     if (!g || g->error != OK) return;
     if (!x) {
-        reject(g, "output: \"%s\" is NULL", name ? name : "");
+        graph_reject(g, "output: \"%s\" is NULL", name ? name : "");
         return;
     }
     for (int i = 0; i < g->output_count; i++) {
         if (strcmp(g->outputs[i].name, name) == 0) {
-            reject(g, "output: the name \"%s\" is already taken", name);
+            graph_reject(g, "output: the name \"%s\" is already taken", name);
             return;
         }
     }
@@ -170,24 +182,25 @@ nn_node *nn_float(nn_graph *g, nn_node *x)
     return node;
 }
 
-/* Appends an operation with parameters, in compute precision. */
-static nn_node *append_named(nn_graph *g, nn_op op, nn_node *x, const char *name, int channels)
+nn_node *graph_append_named(nn_graph *g, nn_op op, nn_node *x, const char *name, int channels)
 {
     nn_node *node = append1(g, op, x);
     if (!x || !node) return NULL;
-    if (x->is_float) return reject(g, "%s \"%s\": convert the input with nn_compute first", op_name(op), name);
-    if (channels < 1) return reject(g, "%s \"%s\": %d output channels", op_name(op), name, channels);
+    if (x->is_float) return graph_reject(g, "%s \"%s\": convert the input with nn_compute first", op_name(op), name);
+    if (channels < 1) return graph_reject(g, "%s \"%s\": %d output channels", op_name(op), name, channels);
     node->channels = channels;
-    return give_name(node, name);
+    return graph_give_name(node, name);
 }
 
 nn_node *nn_conv2d(nn_graph *g, nn_node *x, const char *name, int out, int kernel, int stride, nn_bias bias)
 {
-    nn_node *node = append_named(g, OP_CONV, x, name, out);
+    nn_node *node = graph_append_named(g, OP_CONV, x, name, out);
     if (!node) return NULL;
     if (kernel < 1 || kernel > 31 || stride < 1 || stride > 8)
-        return reject(g, "conv2d \"%s\": kernel %d, stride %d", name, kernel, stride);
-    if (x->reduction == NN_VECTOR) return reject(g, "conv2d \"%s\": the input is a vector, use nn_linear", name);
+        return graph_reject(g, "conv2d \"%s\": kernel %d, stride %d", name, kernel, stride);
+    if (x->reduction == NN_VECTOR) return graph_reject(g, "conv2d \"%s\": the input is a vector, use nn_linear", name);
+    if (x->reduction == NN_POINTS && (kernel > 1 || stride > 1))
+        return graph_reject(g, "conv2d \"%s\": points have no neighbours", name);
     node->reduction = x->reduction * stride;
     node->at.kernel = kernel;
     node->at.stride = stride;
@@ -199,9 +212,9 @@ nn_node *nn_conv2d(nn_graph *g, nn_node *x, const char *name, int out, int kerne
 static nn_node *enlarge(nn_node *node, int factor)
 {
     if (!node) return NULL;
-    if (node->reduction == NN_VECTOR || node->reduction % factor)
-        return reject(node->graph, "%s: size 1/%d cannot be enlarged %d times", op_name(node->op), node->reduction,
-                      factor);
+    if (node->reduction < 1 || node->reduction % factor)
+        return graph_reject(node->graph, "%s: size 1/%d cannot be enlarged %d times", op_name(node->op),
+                            node->reduction, factor);
     node->reduction /= factor;
     return node;
 }
@@ -215,9 +228,9 @@ nn_node *nn_conv2d_zero(nn_graph *g, nn_node *x, const char *name, int out, int 
 
 nn_node *nn_linear(nn_graph *g, nn_node *x, const char *name, int out)
 {
-    nn_node *node = append_named(g, OP_LINEAR, x, name, out);
+    nn_node *node = graph_append_named(g, OP_LINEAR, x, name, out);
     if (!node) return NULL;
-    if (x->reduction != NN_VECTOR) return reject(g, "linear \"%s\": the input is not a vector", name);
+    if (x->reduction != NN_VECTOR) return graph_reject(g, "linear \"%s\": the input is not a vector", name);
     node->at.kernel = node->at.stride = 1;
     node->at.bias = true;
     return node;
@@ -225,7 +238,7 @@ nn_node *nn_linear(nn_graph *g, nn_node *x, const char *name, int out)
 
 nn_node *nn_batch_norm_zero(nn_graph *g, nn_node *x, const char *name)
 {
-    return append_named(g, OP_NORM, x, name, x ? x->channels : 1);
+    return graph_append_named(g, OP_NORM, x, name, x ? x->channels : 1);
 }
 
 nn_node *nn_batch_norm(nn_graph *g, nn_node *x, const char *name)
@@ -256,16 +269,16 @@ static bool matches(const nn_node *node, const nn_node *b, bool channels)
     const nn_node *a = node->in[0];
     if (a->reduction == b->reduction && a->is_float == b->is_float && (!channels || a->channels == b->channels))
         return true;
-    reject(node->graph, "%s: inputs differ: %d channels at 1/%d (%s) and %d channels at 1/%d (%s)", op_name(node->op),
-           a->channels, a->reduction, a->is_float ? "float" : "compute", b->channels, b->reduction,
-           b->is_float ? "float" : "compute");
+    graph_reject(node->graph, "%s: inputs differ: %d channels at 1/%d (%s) and %d channels at 1/%d (%s)",
+                 op_name(node->op), a->channels, a->reduction, a->is_float ? "float" : "compute", b->channels,
+                 b->reduction, b->is_float ? "float" : "compute");
     return false;
 }
 
 nn_node *nn_concat(nn_graph *g, nn_node *const *x, int count)
 {
     if (!g || g->error != OK) return NULL;
-    if (count < 1 || count > NN_MAX_INPUTS) return reject(g, "concat: of %d (1 to %d)", count, NN_MAX_INPUTS);
+    if (count < 1 || count > NN_MAX_INPUTS) return graph_reject(g, "concat: of %d (1 to %d)", count, NN_MAX_INPUTS);
     nn_node *node = append(g, OP_CONCAT, x, count);
     for (int i = 1; node && i < count; i++) {
         if (!matches(node, x[i], false)) return NULL;
@@ -279,7 +292,7 @@ nn_node *nn_slice(nn_graph *g, nn_node *x, int first, int channels)
     nn_node *node = append1(g, OP_SLICE, x);
     if (!node) return NULL;
     if (first < 0 || channels < 1 || first > x->channels - channels)
-        return reject(g, "slice: channels %d to %d of %d", first, first + channels, x->channels);
+        return graph_reject(g, "slice: channels %d to %d of %d", first, first + channels, x->channels);
     node->at.first = first;
     node->channels = channels;
     return node;
@@ -295,7 +308,7 @@ nn_node *nn_gate(nn_graph *g, nn_node *x, nn_node *gate)
 {
     nn_node *node = append(g, OP_GATE, (nn_node *[]){x, gate}, 2);
     if (!node) return NULL;
-    if (gate->channels != 1) return reject(g, "gate: the gate has %d channels, not 1", gate->channels);
+    if (gate->channels != 1) return graph_reject(g, "gate: the gate has %d channels, not 1", gate->channels);
     return matches(node, gate, false) ? node : NULL;
 }
 
@@ -322,7 +335,7 @@ nn_node *nn_tile(nn_graph *g, nn_node *x, nn_node *like)
     nn_node *node = append1(g, OP_TILE, x);
     if (!node) return NULL;
     if (!like || x->reduction != NN_VECTOR || like->reduction == NN_VECTOR)
-        return reject(g, "tile: takes a vector to the size of a node that is not one");
+        return graph_reject(g, "tile: takes a vector to the size of a node that is not one");
     node->reduction = like->reduction;
     return node;
 }
@@ -331,7 +344,7 @@ nn_node *nn_space_to_depth(nn_graph *g, nn_node *x, int block)
 {
     nn_node *node = append1(g, OP_SPACE_TO_DEPTH, x);
     if (!node) return NULL;
-    if (block < 1 || block > 16 || x->reduction == NN_VECTOR) return reject(g, "space_to_depth: block %d", block);
+    if (block < 1 || block > 16 || x->reduction < 1) return graph_reject(g, "space_to_depth: block %d", block);
     node->at.block = block;
     node->channels *= block * block;
     node->reduction *= block;
@@ -343,7 +356,7 @@ nn_node *nn_depth_to_space(nn_graph *g, nn_node *x, int block)
     nn_node *node = append1(g, OP_DEPTH_TO_SPACE, x);
     if (!node) return NULL;
     if (block < 1 || block > 16 || x->channels % (block * block))
-        return reject(g, "depth_to_space: %d channels by block %d", x->channels, block);
+        return graph_reject(g, "depth_to_space: %d channels by block %d", x->channels, block);
     node->at.block = block;
     node->channels /= block * block;
     return enlarge(node, block);
@@ -353,7 +366,7 @@ nn_node *nn_spatial_mean(nn_graph *g, nn_node *x)
 {
     nn_node *node = append1(g, OP_SPATIAL_MEAN, x);
     if (!node) return NULL;
-    if (x->reduction == NN_VECTOR) return reject(g, "spatial_mean: the input is a vector already");
+    if (x->reduction == NN_VECTOR) return graph_reject(g, "spatial_mean: the input is a vector already");
     node->reduction = NN_VECTOR;
     return node;
 }
@@ -361,8 +374,8 @@ nn_node *nn_spatial_mean(nn_graph *g, nn_node *x)
 static bool is_float_of(const nn_node *node, const nn_node *x, int channels, const char *what)
 {
     if (x->is_float && x->channels == channels) return true;
-    reject(node->graph, "%s: %s must be float (nn_float) with %d channels, has %d", op_name(node->op), what, channels,
-           x->channels);
+    graph_reject(node->graph, "%s: %s must be float (nn_float) with %d channels, has %d", op_name(node->op), what,
+                 channels, x->channels);
     return false;
 }
 
@@ -392,8 +405,8 @@ nn_node *nn_render(nn_graph *g, const nn_render_inputs *in, float fov, float lig
         if (i < 5 && !matches(node, inputs[i], false)) return NULL;
     }
     if (!node) return NULL;
-    if (in->light->reduction != NN_VECTOR) return reject(g, "render: the light must be a vector");
-    if (in->lens && in->lens->reduction != NN_VECTOR) return reject(g, "render: the lens must be a vector");
+    if (in->light->reduction != NN_VECTOR) return graph_reject(g, "render: the light must be a vector");
+    if (in->lens && in->lens->reduction != NN_VECTOR) return graph_reject(g, "render: the lens must be a vector");
     node->at.fov = fov;
     node->at.light_power = light_power;
     return node;
@@ -405,7 +418,7 @@ nn_node *nn_environment(nn_graph *g, nn_node *albedo, nn_node *normal, nn_node *
     if (!node || !matches(node, normal, true) || !matches(node, mask, false)) return NULL;
     if (!is_float_of(node, albedo, 3, "albedo") || !is_float_of(node, mask, 1, "mask")) return NULL;
     if (!is_float_of(node, sh, 27, "sh")) return NULL;
-    if (sh->reduction != NN_VECTOR) return reject(g, "environment: the coefficients must be a vector");
+    if (sh->reduction != NN_VECTOR) return graph_reject(g, "environment: the coefficients must be a vector");
     return node;
 }
 
@@ -415,8 +428,12 @@ static void append_loss(nn_graph *g, nn_op op, nn_node *const in[3], const char 
     if (!node || !matches(node, in[1], true) || !matches(node, in[2], false)) return;
     if (!is_float_of(node, in[0], in[0]->channels, "the prediction")) return;
     if (!is_float_of(node, in[2], 1, "the mask")) return;
+    if (in[0]->reduction < 1 && op != OP_MASKED_L2) {
+        graph_reject(g, "%s \"%s\": the prediction is not an image", op_name(op), name);
+        return;
+    }
     node->at.weight = weight;
-    give_name(node, name);
+    graph_give_name(node, name);
 }
 
 void nn_masked_l2(nn_graph *g, nn_node *prediction, nn_node *target, nn_node *mask, const char *name, float weight)

@@ -10,7 +10,8 @@
 enum { NN_MAX_INPUTS = 8 };
 
 typedef struct nn_attributes {
-    int kernel, stride, block, first;
+    int kernel, stride, block, first, heads;
+    int reduction;   /* of the map that gather reads */
     bool bias, zero; /* zero: initial weights of a convolution are 0 */
     float scale, shift;
     float fov, light_power;
@@ -26,7 +27,7 @@ struct nn_node {
     nn_node *in[NN_MAX_INPUTS];
     int inputs;
     int channels, reduction;
-    bool is_float;
+    bool is_float, of_object; /* of_object: an image for each object instead of each picture */
     nn_attributes at;
 };
 
@@ -46,5 +47,17 @@ struct nn_graph {
 
 /* Returns the graph's first error again, or OK. */
 status graph_check(const nn_graph *g);
+
+/* ---- what builder functions are made of ---- */
+
+/* Notes the graph's first error; returns NULL. */
+__attribute__((format(printf, 2, 3))) nn_node *graph_reject(nn_graph *g, const char *format, ...);
+/* Appends a node that takes channels, reduction, precision and kind (of objects or not) from its first input. Inputs
+ * may be of both kinds if `mixed`. */
+nn_node *graph_append(nn_graph *g, nn_op op, nn_node *const *in, int inputs, bool mixed);
+/* Appends an operation with parameters, in compute precision. */
+nn_node *graph_append_named(nn_graph *g, nn_op op, nn_node *x, const char *name, int channels);
+/* Names a node; parameters, inputs and losses each have a space of names of their own. */
+nn_node *graph_give_name(nn_node *node, const char *name);
 
 #endif

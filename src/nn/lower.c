@@ -20,15 +20,25 @@ static status check_options(const nn_options *o)
         o->width > SIZE_LIMIT)
         return fail(MERLIN_WRONG_USE, "a program of batch %d, height %d, width %d (1 to %d each)", o->batch, o->height,
                     o->width, SIZE_LIMIT);
+    if (o->group < 0 || o->group > NN_LARGEST_GROUP || (o->group > 0 && o->batch % o->group))
+        return fail(MERLIN_WRONG_USE, "a batch of %d pictures, %d of each object (up to %d, a divisor)", o->batch,
+                    o->group, NN_LARGEST_GROUP);
+    if (o->points < 0 || o->points > SIZE_LIMIT)
+        return fail(MERLIN_WRONG_USE, "%d points (0 to %d)", o->points, SIZE_LIMIT);
     return OK;
 }
 
 static status infer_shape(const nn_options *o, lowered_value *v)
 {
     const nn_node *node = v->node;
+    const int images = node->of_object && o->group > 1 ? o->batch / o->group : o->batch;
     v->tensor =
-        (nn_tensor){.type = node->is_float ? NN_FLOAT32 : o->type, .n = o->batch, .h = 1, .w = 1, .c = node->channels};
+        (nn_tensor){.type = node->is_float ? NN_FLOAT32 : o->type, .n = images, .h = 1, .w = 1, .c = node->channels};
     if (node->reduction == NN_VECTOR) return OK;
+    if (node->reduction == NN_POINTS) {
+        v->tensor.w = o->points;
+        return o->points > 0 ? OK : fail(MERLIN_WRONG_USE, "%s works on points, and there are none", op_name(node->op));
+    }
     if (o->height % node->reduction || o->width % node->reduction)
         return fail(MERLIN_WRONG_USE, "%s %s works at 1/%d of the size, which %d by %d is not a multiple of",
                     op_name(node->op), node->name ? node->name : "", node->reduction, o->height, o->width);

@@ -39,9 +39,11 @@ nn_graph *nn_graph_new(void);
 void nn_graph_free(nn_graph *g);
 
 typedef enum nn_bias { NN_NO_BIAS, NN_BIAS } nn_bias;
-enum { NN_VECTOR = 0 };
+/* Instead of a reduction: a vector, and values at sampled points. */
+enum { NN_VECTOR = 0, NN_POINTS = -1 };
 
-/* Adds a float32 input: N × H/reduction × W/reduction × channels; reduction NN_VECTOR means N × 1 × 1 × channels. */
+/* Adds a float32 input: N × H/reduction × W/reduction × channels; reduction NN_VECTOR means N × 1 × 1 × channels,
+ * NN_POINTS N × 1 × points × channels. */
 nn_node *nn_input(nn_graph *g, const char *name, int channels, int reduction);
 /* Names a node whose value is kept after nn_forward (any precision; returned as float32). */
 void nn_output(nn_graph *g, nn_node *x, const char *name);
@@ -85,6 +87,39 @@ nn_node *nn_spatial_mean(nn_graph *g, nn_node *x);
 nn_node *nn_normalize(nn_graph *g, nn_node *x);
 /* Computes 1 / (scale·x + shift): depth from the network's range, for example. */
 nn_node *nn_reciprocal(nn_graph *g, nn_node *x, float scale, float shift);
+
+/* ---- several pictures of an object ----
+ *
+ * A program's batch consists of objects, each with nn_options.group pictures one behind another. Nodes are of pictures,
+ * unless they come from nn_group_input or from an operation below whose result is of objects; operations with several
+ * inputs take only inputs of one kind. Pictures for which `present` (an input of pictures, NN_VECTOR, 1 channel; NULL:
+ * all) is not positive are left out, so that one program serves fewer pictures, too. A result for an object without
+ * pictures is zero. */
+
+enum { NN_LARGEST_GROUP = 64, NN_LARGEST_HEAD = 64 };
+
+/* Adds a float32 input of objects: N/group × H/reduction × W/reduction × channels. */
+nn_node *nn_group_input(nn_graph *g, const char *name, int channels, int reduction);
+/* Take each value's largest, mean, and standard deviation (of the population) over an object's pictures: of objects. */
+nn_node *nn_group_max(nn_graph *g, nn_node *x, nn_node *present);
+nn_node *nn_group_mean(nn_graph *g, nn_node *x, nn_node *present);
+nn_node *nn_group_spread(nn_graph *g, nn_node *x, nn_node *present);
+/* Repeats an object's values for each of its pictures. */
+nn_node *nn_group_repeat(nn_graph *g, nn_node *x);
+/* Adds scaled dot-product attention among an object's pictures, for each pixel on its own (Vaswani et al. 2017). x:
+ * query, key and value as three equal parts of its channels, each divided among the heads; the result has a third of
+ * the channels. At most NN_LARGEST_HEAD channels a head. */
+nn_node *nn_group_attention(nn_graph *g, nn_node *x, nn_node *present, int heads);
+/* Adds attention with a learned query, parameter `name.weight`, which is zero at first, so that the result is the mean
+ * then. x: key and value as two equal parts of its channels; the result, of objects, has half of the channels. */
+nn_node *nn_group_pool(nn_graph *g, nn_node *x, nn_node *present, const char *name, int heads);
+/* Normalizes each pixel over its channels (Ba et al. 2016); eps 1e-5. Parameters `name.weight`, `name.bias`. */
+nn_node *nn_layer_norm(nn_graph *g, nn_node *x, const char *name);
+/* Interpolates x bilinearly at points: the result is NN_POINTS, on which 1×1 convolutions, norms, attention and masked
+ * L2 losses work. places (float, NN_POINTS, of pictures or objects): column and row in pixels of a picture of the
+ * program's size, where whole numbers are pixels' centres. No gradient flows to places. */
+nn_node *nn_gather(nn_graph *g, nn_node *x, nn_node *places);
+
 /* The inputs of the rendering layer (the paper's Eq. 2 and 3, the BRDF of src/optics/brdf.h): radiance of the object
  * under one point light, clipped to [0, 1] and multiplied by the mask. albedo (3) and roughness (1) in [-1, 1] as
  * inside the network, normal (3) unit, depth (1) in scene units, mask (1), light (vector of 3: position in camera
@@ -137,6 +172,7 @@ typedef struct nn_param {
     float *value;              /* float32 master; NULL if `half` has the values */
     uint16_t *half;            /* NULL except for weights of nn_params_open */
     float *gradient;           /* set by nn_backward; NULL for running statistics */
+    bool decays;               /* weights of convolutions and fully connected layers: see nn_adam_options */
     float learning_rate_scale; /* multiplies Adam's rate; 1 unless nn_params_scale_rate said otherwise */
 } nn_param;
 nn_param *nn_params_at(nn_params *params, size_t i);
@@ -167,7 +203,9 @@ typedef enum nn_purpose {
 typedef enum nn_filtering { NN_FILTER_FASTER, NN_FILTER_NONE, NN_FILTER_ALL } nn_filtering;
 
 typedef struct nn_options {
-    int batch, height, width;
+    int batch, height, width; /* batch: pictures in all, a multiple of group */
+    int group;                /* pictures of each object, up to NN_LARGEST_GROUP; 0: 1 */
+    int points;               /* of an image that is sampled by nn_gather; 0: none is */
     nn_type type;
     nn_purpose purpose;
     const char *const *outputs; /* names, ended by NULL, of the only outputs to be computed; NULL: all */
@@ -238,6 +276,9 @@ nn_type nn_fastest_type(void);
 typedef struct nn_adam_options {
     float beta1, beta2, epsilon;
     float clip_norm; /* gradients are scaled down to this global L2 norm; 0: never */
+    /* Share of a weight that is taken off at each step per unit of learning rate (Loshchilov & Hutter 2019); not of
+     * biases, norms and the query of nn_group_pool. 0: none. */
+    float weight_decay;
 } nn_adam_options;
 status nn_adam_new(nn_params *params, const nn_adam_options *options, nn_adam **out);
 void nn_adam_free(nn_adam *adam);

@@ -24,6 +24,14 @@ static const op_row rows[] = {
     [OP_SPATIAL_MEAN] = {.name = "spatial_mean"},
     [OP_NORMALIZE] = {.name = "normalize"},
     [OP_RECIPROCAL] = {.name = "reciprocal"},
+    [OP_GROUP_MAX] = {.name = "group_max", .gradients = 1},
+    [OP_GROUP_MEAN] = {.name = "group_mean", .gradients = 1},
+    [OP_GROUP_SPREAD] = {.name = "group_spread", .gradients = 1},
+    [OP_GROUP_REPEAT] = {.name = "group_repeat"},
+    [OP_GROUP_ATTENTION] = {.name = "group_attention", .gradients = 1},
+    [OP_GROUP_POOL] = {.name = "group_pool", .has_params = true, .gradients = 1},
+    [OP_LAYER_NORM] = {.name = "layer_norm", .has_params = true},
+    [OP_GATHER] = {.name = "gather", .gradients = 1},
     [OP_RENDER] = {.name = "render", .gradients = 4},           /* the maps; not mask, light and lens */
     [OP_ENVIRONMENT] = {.name = "environment", .gradients = 3}, /* not the mask */
     [OP_MASKED_L2] = {.name = "masked_l2", .is_loss = true, .gradients = 1},

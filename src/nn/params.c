@@ -52,6 +52,11 @@ static int node_specs(const nn_node *node, param_spec specs[PARAMS_PER_NODE])
         specs[count++] = vector_spec(node, "bias", 0, true);
         specs[count++] = vector_spec(node, "running_mean", 0, false);
         specs[count++] = vector_spec(node, "running_var", 1, false);
+    } else if (node->op == OP_LAYER_NORM) {
+        specs[count++] = vector_spec(node, "weight", 1, true);
+        specs[count++] = vector_spec(node, "bias", 0, true);
+    } else if (node->op == OP_GROUP_POOL) {
+        specs[count++] = vector_spec(node, "weight", 0, true);
     }
     return count;
 }
@@ -93,7 +98,7 @@ typedef struct room {
 static status add_param(nn_params *params, const param_spec *spec, const source *from, room *needed)
 {
     nn_param *p = &params->items[params->count++];
-    *p = (nn_param){.rank = spec->rank, .count = 1, .learning_rate_scale = 1};
+    *p = (nn_param){.rank = spec->rank, .count = 1, .decays = spec->fan_in > 0, .learning_rate_scale = 1};
     memcpy(p->shape, spec->shape, sizeof p->shape);
     for (int i = 0; i < p->rank; i++)
         p->count *= (size_t)p->shape[i];

@@ -14,41 +14,12 @@
 #include <string.h>
 
 #include "model/model.h"
-#include "nn/safetensors.h"
+#include "reference.h"
 
-#include <cmocka.h>
-
-enum { SIZE = 64, BATCH = 2, STRIDE = 8, WIDTH = 8, NAME = 160 };
+enum { SIZE = 64, BATCH = 2, STRIDE = 8, WIDTH = 8 };
 static const float rate = 0.01f;
 
-/* ---- numbers computed as in make_reference.py ---- */
-
-static uint32_t hash_name(const char *name)
-{
-    uint32_t h = 2166136261u;
-    for (; *name; name++)
-        h = (h ^ (unsigned char)*name) * 16777619u;
-    return h;
-}
-
-/* Returns a number in [-1, 1). */
-static double hashed(uint32_t seed, size_t i)
-{
-    uint32_t x = seed + (uint32_t)i * 0x9e3779b9u;
-    x ^= x >> 16;
-    x *= 0x85ebca6bu;
-    x ^= x >> 13;
-    x *= 0xc2b2ae35u;
-    x ^= x >> 16;
-    return (double)(x >> 8) * 0x1p-23 - 1;
-}
-
-static void fill(float *to, const char *name, size_t count, double scale, double shift)
-{
-    uint32_t seed = hash_name(name);
-    for (size_t i = 0; i < count; i++)
-        to[i] = (float)(scale * hashed(seed, i) + shift);
-}
+/* ---- inputs and parameters ---- */
 
 static void fill_disc(float *to, int radius)
 {
@@ -78,62 +49,13 @@ static void fill_inputs(nn_program *p)
     for (size_t i = 0; i < sizeof images / sizeof *images; i++) {
         float *to = nn_input_data(p, images[i].name);
         size_t count = (size_t)(BATCH * SIZE * SIZE * images[i].channels);
-        if (to) fill(to, images[i].name, count, images[i].scale, images[i].shift);
+        if (to) reference_fill(to, images[i].name, count, images[i].scale, images[i].shift);
     }
     float *image = nn_input_data(p, "image"), *light = nn_input_data(p, "light");
     for (size_t i = 0; i < BATCH * SIZE * SIZE * 3; i++)
         image[i] *= mask[i / 3];
-    if (light) fill(light, "light", BATCH * 3, 1, 0);
-    fill(nn_input_data(p, "light_position"), "light_position", BATCH * 3, 0.5, 0);
-}
-
-static bool ends_in(const char *name, const char *ending)
-{
-    size_t n = strlen(name), m = strlen(ending);
-    return n >= m && strcmp(name + n - m, ending) == 0;
-}
-
-static void fill_params(nn_params *params)
-{
-    for (size_t i = 0; i < nn_params_count(params); i++) {
-        nn_param *p = nn_params_at(params, i);
-        double fan_in = (double)p->count / (double)p->shape[0], scale = p->rank > 1 ? sqrt(6 / fan_in) : 0.2;
-        bool around_one = ends_in(p->name, ".running_var") || ends_in(p->name, "norm.weight");
-        fill(p->value, p->name, p->count, scale, around_one ? 1 : 0);
-    }
-    nn_params_touch(params);
-}
-
-/* ---- comparing ---- */
-
-static const safetensors_tensor *stored(const safetensors_file *f, const char *kind, const char *name)
-{
-    char full[NAME];
-    snprintf(full, sizeof full, "%s.%s", kind, name);
-    return safetensors_find(f, full);
-}
-
-/* Returns |found - expected| over |expected|, as vectors. */
-static double distance(const safetensors_tensor *expected, const float *found)
-{
-    float *wanted = malloc((expected->count + 1) * sizeof *wanted);
-    assert_non_null(wanted);
-    assert_int_equal(safetensors_to_float(expected, wanted), OK);
-    double error = 0, size = 0;
-    for (size_t i = 0; i < expected->count; i++) {
-        error += pow((double)found[i] - (double)wanted[i], 2);
-        size += pow((double)wanted[i], 2);
-    }
-    free(wanted);
-    return sqrt(error / (size + 1e-30));
-}
-
-static void compare(const safetensors_file *f, const char *kind, const char *name, const float *found, double tolerance)
-{
-    const safetensors_tensor *t = stored(f, kind, name);
-    if (!t) fail_msg("%s.%s is not in the reference", kind, name);
-    double d = distance(t, found);
-    if (!(d <= tolerance)) fail_msg("%s.%s is off by %.3g of its size, %.3g allowed", kind, name, d, tolerance);
+    if (light) reference_fill(light, "light", BATCH * 3, 1, 0);
+    reference_fill(nn_input_data(p, "light_position"), "light_position", BATCH * 3, 0.5, 0);
 }
 
 /* ---- one variant ---- */
@@ -175,7 +97,7 @@ static session session_new(bool everything)
     assert_int_equal(model_build(&s.config, MODEL_TRAINING, &s.training), OK);
     assert_int_equal(model_build(&s.config, MODEL_WHOLE, &s.whole), OK);
     assert_int_equal(nn_params_new(s.training, 1, &s.params), OK);
-    fill_params(s.params);
+    reference_fill_params(s.params);
     if (nn_compile(s.training, s.params, &options, &s.train) != OK) fail_msg("%s", status_message());
     options.purpose = NN_INFER;
     if (nn_compile(s.whole, s.params, &options, &s.infer) != OK) fail_msg("%s", status_message());
@@ -198,9 +120,9 @@ static void compare_losses(const session *s, const char *kind, double tolerance)
     int count = 0;
     for (int i = 0; i < MODEL_LOSSES; i++) {
         float found = nn_loss(s->train, model_losses[i]);
-        const safetensors_tensor *t = stored(s->reference, kind, model_losses[i]);
+        const safetensors_tensor *t = reference_stored(s->reference, kind, model_losses[i]);
         assert_true((t == NULL) == (isnan(found) != 0));
-        if (t) compare(s->reference, kind, model_losses[i], &found, tolerance), count++;
+        if (t) reference_compare(s->reference, kind, model_losses[i], &found, tolerance), count++;
     }
     assert_true(count >= 7);
 }
@@ -209,7 +131,7 @@ static void compare_gradients(const session *s, double tolerance)
 {
     for (size_t i = 0; i < nn_params_count(s->params); i++) {
         const nn_param *p = nn_params_at(s->params, i);
-        if (p->gradient) compare(s->reference, "gradient", p->name, p->gradient, tolerance);
+        if (p->gradient) reference_compare(s->reference, "gradient", p->name, p->gradient, tolerance);
     }
 }
 
@@ -234,10 +156,10 @@ static void compare_steps(const session *s, double tolerance)
     float *before = s->before;
     for (size_t i = 0; i < nn_params_count(s->params); before += nn_params_at(s->params, i)->count, i++) {
         const nn_param *p = nn_params_at(s->params, i);
-        if (!p->gradient || !stored(s->reference, "step", p->name)) continue;
+        if (!p->gradient || !reference_stored(s->reference, "step", p->name)) continue;
         for (size_t k = 0; k < p->count; k++)
             before[k] = (p->value[k] - before[k]) / rate;
-        compare(s->reference, "step", p->name, before, tolerance);
+        reference_compare(s->reference, "step", p->name, before, tolerance);
     }
 }
 
@@ -245,7 +167,7 @@ static void compare_running(const session *s, double tolerance)
 {
     for (size_t i = 0; i < nn_params_count(s->params); i++) {
         const nn_param *p = nn_params_at(s->params, i);
-        if (!p->gradient) compare(s->reference, "running", p->name, p->value, tolerance);
+        if (!p->gradient) reference_compare(s->reference, "running", p->name, p->value, tolerance);
     }
 }
 
@@ -255,7 +177,7 @@ static void compare_outputs(const session *s, double tolerance)
                                         "direct", "indirect", "relit_direct", "relit_brdf"};
     for (int k = 0; k < 8; k++) {
         const float *found = nn_output_data(s->infer, names[k]);
-        const safetensors_tensor *t = stored(s->reference, "output", names[k]);
+        const safetensors_tensor *t = reference_stored(s->reference, "output", names[k]);
         assert_true((t == NULL) == (found == NULL));
         if (!t) continue;
         size_t channels = (size_t)t->shape[3], pixels = t->count / channels, side = SIZE / STRIDE;
@@ -265,7 +187,7 @@ static void compare_outputs(const session *s, double tolerance)
             size_t n = i / (side * side), y = i / side % side * STRIDE, x = i % side * STRIDE;
             memcpy(kept + i * channels, found + ((n * SIZE + y) * SIZE + x) * channels, channels * sizeof *kept);
         }
-        compare(s->reference, "output", names[k], kept, tolerance);
+        reference_compare(s->reference, "output", names[k], kept, tolerance);
         free(kept);
     }
 }
@@ -279,7 +201,7 @@ static void run_variant(bool everything)
     nn_params_scale_rate(s.params, "relight", 2);
     if (nn_forward(s.train) != OK) fail_msg("%s", status_message());
     float total = nn_total_loss(s.train);
-    if (distance(safetensors_find(s.reference, "total"), &total) > 1e-5)
+    if (reference_distance(safetensors_find(s.reference, "total"), &total) > 1e-5)
         fail_msg("the total loss is %.9g", (double)total);
     compare_losses(&s, "loss", 2e-5);
     if (nn_backward(s.train) != OK) fail_msg("%s", status_message());

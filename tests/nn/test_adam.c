@@ -203,15 +203,36 @@ static void a_restored_optimizer_goes_on_with_the_same_bits(void **state)
         nn_adam_free(adam[k]), nn_params_free(params[k]);
 }
 
+/* Beside the step of the gradient, a weight loses the rate times the decay of itself. */
+static void weights_decay_and_biases_do_not(void **state)
+{
+    (void)state;
+    float after[2][2];
+    for (int decays = 0; decays < 2; decays++) {
+        nn_params *params = layer();
+        nn_adam_options options = {0.9f, 0.999f, 1e-8f, 0, decays ? 0.5f : 0};
+        nn_adam *adam = NULL;
+        nn_param *weight = nn_params_find(params, "layer.weight"), *bias = nn_params_find(params, "layer.bias");
+        weight->value[0] = bias->value[0] = 2;
+        assert_int_equal(nn_adam_new(params, &options, &adam), OK);
+        set_gradients(params, 0.25f, 0.25f);
+        assert_int_equal(nn_adam_step(adam, 0.01f), OK);
+        after[decays][0] = weight->value[0], after[decays][1] = bias->value[0];
+        nn_adam_free(adam);
+        nn_params_free(params);
+    }
+    assert_float_equal(after[0][0] - after[1][0], 0.01f * 0.5f * 2, 1e-6f);
+    assert_float_equal(after[0][1], after[1][1], 0);
+}
+
 static void senseless_options_are_refused(void **state)
 {
     (void)state;
     nn_params *params = layer();
-    static const nn_adam_options wrong[] = {{1, 0.999f, 1e-8f, 0},
-                                            {0.9f, -0.1f, 1e-8f, 0},
-                                            {0.9f, NAN, 1e-8f, 0},
-                                            {0.9f, 0.999f, 0, 0},
-                                            {0.9f, 0.999f, 1e-8f, -1}};
+    static const nn_adam_options wrong[] = {{1, 0.999f, 1e-8f, 0, 0},     {0.9f, -0.1f, 1e-8f, 0, 0},
+                                            {0.9f, NAN, 1e-8f, 0, 0},     {0.9f, 0.999f, 0, 0, 0},
+                                            {0.9f, 0.999f, 1e-8f, -1, 0}, {0.9f, 0.999f, 1e-8f, 0, -1},
+                                            {0.9f, 0.999f, 1e-8f, 0, NAN}};
     nn_adam *adam = NULL;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
         assert_int_equal(nn_adam_new(params, &wrong[i], &adam), MERLIN_WRONG_USE);
@@ -228,7 +249,7 @@ static void kernels_do_not_depend_on_the_number_of_threads(void **state)
     (void)state;
     enum { COUNT = 40001 };
     cpu_tensor g = tensor_random(NN_FLOAT32, 1, 1, 1, COUNT, 1);
-    adam_step step = {1e-3f, 0.9f, 0.999f, 1e-8f, 0.1f, 1e-3f, 0.5f};
+    adam_step step = {1e-3f, 0.9f, 0.999f, 1e-8f, 0.1f, 1e-3f, 0.5f, 0.9f};
     cpu_tensor v[2], m1[2], m2[2];
     double sum[2];
     int before = parallel_threads();
@@ -258,6 +279,7 @@ int main(void)
         cmocka_unit_test(a_gradient_whose_square_overflows_changes_nothing),
         cmocka_unit_test(a_large_gradient_that_is_clipped_is_taken),
         cmocka_unit_test(a_restored_optimizer_goes_on_with_the_same_bits),
+        cmocka_unit_test(weights_decay_and_biases_do_not),
         cmocka_unit_test(senseless_options_are_refused),
         cmocka_unit_test(kernels_do_not_depend_on_the_number_of_threads),
     };

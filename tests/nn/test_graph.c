@@ -98,6 +98,61 @@ static void wrong_arguments_are_refused(void **state)
     assert_refused(g, "normalize");
 }
 
+static void pictures_and_objects_are_kept_apart(void **state)
+{
+    (void)state;
+    nn_graph *g = nn_graph_new();
+    nn_node *x = nn_input(g, "x", 6, 1);
+    assert_null(nn_concat(g, (nn_node *[]){x, nn_group_mean(g, x, NULL)}, 2));
+    assert_refused(g, "of pictures and of objects");
+
+    g = nn_graph_new();
+    assert_null(nn_group_max(g, nn_group_input(g, "x", 6, 1), NULL));
+    assert_refused(g, "of objects already");
+
+    g = nn_graph_new();
+    assert_null(nn_group_repeat(g, nn_input(g, "x", 6, 1)));
+    assert_refused(g, "of pictures already");
+
+    g = nn_graph_new();
+    x = nn_input(g, "x", 6, 1);
+    assert_null(nn_group_mean(g, x, x));
+    assert_refused(g, "float vector of 1 channel");
+
+    g = nn_graph_new();
+    assert_null(nn_group_attention(g, nn_input(g, "x", 12, 1), NULL, 3));
+    assert_refused(g, "3 parts of 3 heads");
+
+    g = nn_graph_new();
+    assert_null(nn_group_pool(g, nn_input(g, "x", 4 * NN_LARGEST_HEAD, 1), NULL, "pool", 1));
+    assert_refused(g, "at most 64 channels");
+}
+
+static void points_have_no_neighbours(void **state)
+{
+    (void)state;
+    nn_graph *g = nn_graph_new();
+    assert_null(nn_conv2d(g, compute_input(g, "x", 3, NN_POINTS), "conv", 4, 3, 1, NN_BIAS));
+    assert_refused(g, "no neighbours");
+
+    g = nn_graph_new();
+    assert_null(nn_upsample_bilinear(g, nn_input(g, "x", 3, NN_POINTS)));
+    assert_refused(g, "cannot be enlarged");
+
+    g = nn_graph_new();
+    nn_node *x = nn_input(g, "x", 1, NN_POINTS);
+    nn_masked_dssim(g, x, x, x, "loss", 1);
+    assert_refused(g, "not an image");
+
+    g = nn_graph_new();
+    assert_null(nn_gather(g, nn_input(g, "x", 3, 1), nn_input(g, "places", 2, NN_VECTOR)));
+    assert_refused(g, "NN_POINTS");
+
+    g = nn_graph_new();
+    assert_null(nn_gather(g, nn_group_input(g, "x", 3, 1), nn_input(g, "places", 2, NN_POINTS)));
+    assert_refused(g, "places are of pictures");
+}
+
 static void the_first_error_is_reported_and_null_passes_quietly(void **state)
 {
     (void)state;
@@ -178,6 +233,25 @@ static void sizes_that_do_not_divide_are_refused(void **state)
     assert_null(p);
     assert_non_null(strstr(status_message(), "multiple"));
     assert_int_equal(nn_compile(g, params, &(nn_options){.batch = 0, .height = 16, .width = 16}, &p), MERLIN_WRONG_USE);
+    nn_params_free(params);
+    nn_graph_free(g);
+}
+
+static void batches_that_are_no_whole_objects_are_refused(void **state)
+{
+    (void)state;
+    nn_graph *g = nn_graph_new();
+    nn_output(g, nn_gather(g, nn_input(g, "x", 3, 1), nn_input(g, "places", 2, NN_POINTS)), "y");
+    nn_params *params;
+    nn_program *p;
+    assert_int_equal(nn_params_new(g, 7, &params), OK);
+    nn_options wrong[] = {{.batch = 4, .group = 3, .points = 1}, {.batch = 65, .group = 65, .points = 1}, {.batch = 4}};
+    static const char *const words[] = {"3 of each object", "up to 64", "there are none"};
+    for (int i = 0; i < 3; i++) {
+        wrong[i].height = wrong[i].width = 8;
+        assert_int_equal(nn_compile(g, params, &wrong[i], &p), MERLIN_WRONG_USE);
+        assert_non_null(strstr(status_message(), words[i]));
+    }
     nn_params_free(params);
     nn_graph_free(g);
 }
@@ -347,10 +421,13 @@ int main(void)
         cmocka_unit_test(duplicate_names_are_refused),
         cmocka_unit_test(inputs_that_differ_are_refused),
         cmocka_unit_test(wrong_arguments_are_refused),
+        cmocka_unit_test(pictures_and_objects_are_kept_apart),
+        cmocka_unit_test(points_have_no_neighbours),
         cmocka_unit_test(the_first_error_is_reported_and_null_passes_quietly),
         cmocka_unit_test(parameters_have_pytorch_shapes),
         cmocka_unit_test(first_weights_depend_on_seed_and_name_alone),
         cmocka_unit_test(sizes_that_do_not_divide_are_refused),
+        cmocka_unit_test(batches_that_are_no_whole_objects_are_refused),
         cmocka_unit_test(parameters_of_another_graph_are_refused),
         cmocka_unit_test(a_program_outlives_its_graph),
         cmocka_unit_test(cost_counts_two_per_multiply_add),

@@ -15,6 +15,28 @@
 
 #include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
+/* Adds to what the net sees of each picture what its object's pictures have in common. */
+static nn_node *share(nn_graph *g, nn_node *x)
+{
+    nn_node *present = nn_input(g, "present", 1, NN_VECTOR);
+    nn_node *seen = nn_group_attention(g, nn_conv2d(g, x, "attention", 24, 1, 1, NN_BIAS), present, 2);
+    seen = nn_layer_norm(g, seen, "attention.norm");
+    nn_node *pooled = nn_group_pool(g, nn_conv2d(g, seen, "pooled", 12, 1, 1, NN_BIAS), present, "pool", 2);
+    nn_node *common[] = {nn_group_max(g, x, present), nn_group_mean(g, x, present), nn_group_spread(g, x, present),
+                         pooled};
+    nn_node *joined = nn_conv2d(g, nn_concat(g, common, 4), "common", 4, 1, 1, NN_BIAS);
+    return nn_concat(g, (nn_node *[]){x, seen, nn_group_repeat(g, joined)}, 3);
+}
+
+/* Adds a loss at sampled points. */
+static void sample(nn_graph *g, nn_node *map)
+{
+    nn_node *target = nn_input(g, "point_target", 3, NN_POINTS), *mask = nn_input(g, "point_mask", 1, NN_POINTS);
+    nn_node *points = nn_compute(g, nn_gather(g, map, nn_group_input(g, "places", 2, NN_POINTS)));
+    points = nn_float(g, nn_tanh(g, nn_conv2d(g, points, "points", 3, 1, 1, NN_BIAS)));
+    nn_masked_l2(g, points, target, mask, "points", 0.5f);
+}
+
 /* Builds a net that is smooth except for one ReLU and the rendering layer's clipping, with every value used in several
  * ways. */
 static nn_graph *build_net(void)
@@ -34,7 +56,8 @@ static nn_graph *build_net(void)
     nn_node *joined = nn_add(g, up, nn_gate(g, fine, gate));
     nn_node *block = nn_relu(g, nn_batch_norm(g, nn_conv2d(g, joined, "block", 12, 3, 1, NN_NO_BIAS), "block.bn"));
     joined = nn_add(g, block, joined);
-    nn_node *head = nn_float(g, nn_conv2d(g, joined, "head", 32, 3, 1, NN_BIAS));
+    sample(g, joined);
+    nn_node *head = nn_float(g, nn_conv2d(g, share(g, joined), "head", 32, 3, 1, NN_BIAS));
     head = nn_depth_to_space(g, head, 2);
     nn_node *albedo = nn_tanh(g, nn_slice(g, head, 0, 3));
     nn_node *slope = nn_tanh(g, nn_slice(g, head, 3, 2));
@@ -74,6 +97,12 @@ static void fill_inputs(nn_program *p, const nn_options *o)
     for (size_t i = 0; i < pixels; i++)
         nn_input_data(p, "mask")[i] = nn_input_data(p, "mask")[i] > 0.5f;
     fill(nn_input_data(p, "light"), (size_t)o->batch * 3, 3, -0.3f, 0.3f);
+    const size_t batch = (size_t)o->batch, points = batch * (size_t)o->points;
+    for (size_t i = 0; i < batch; i++)
+        nn_input_data(p, "present")[i] = i != 1; /* one picture is left out if there are several */
+    fill(nn_input_data(p, "places"), 2 * points / (size_t)(o->group ? o->group : 1), 4, -1, 8);
+    fill(nn_input_data(p, "point_target"), 3 * points, 5, -0.5f, 0.5f);
+    fill(nn_input_data(p, "point_mask"), points, 6, 0.1f, 1);
 }
 
 static nn_program *compile_net(nn_params **params, const nn_options *options)
@@ -119,7 +148,7 @@ static void gradients_match_finite_differences(void **state)
 {
     (void)state;
     nn_params *params = NULL;
-    const nn_options options = {.batch = 2, .height = 8, .width = 8, .purpose = NN_TRAIN};
+    const nn_options options = {.batch = 4, .height = 8, .width = 8, .group = 2, .points = 5, .purpose = NN_TRAIN};
     nn_program *p = compile_net(&params, &options);
     for (size_t i = 0; i < nn_params_count(params); i++) {
         nn_param *q = nn_params_at(params, i);
@@ -147,7 +176,8 @@ static void the_net_has_every_operation(void **state)
 {
     (void)state;
     nn_graph *g = build_net();
-    const nn_options options = {.batch = 2, .height = 8, .width = 8, .type = NN_BFLOAT16, .purpose = NN_TRAIN};
+    const nn_options options = {
+        .batch = 4, .height = 8, .width = 8, .group = 2, .points = 5, .type = NN_BFLOAT16, .purpose = NN_TRAIN};
     lowering low;
     assert_int_equal(lower_graph(g, &options, &low), OK);
     bool seen[OP_COUNT] = {[OP_INPUT] = true};
@@ -182,7 +212,8 @@ static void backward_reads_only_what_is_kept_for_it(void **state)
     (void)state;
     for (nn_type type = NN_FLOAT32; type <= NN_BFLOAT16; type++) {
         nn_params *params = NULL;
-        const nn_options options = {.batch = 2, .height = 8, .width = 8, .type = type, .purpose = NN_TRAIN};
+        const nn_options options = {
+            .batch = 4, .height = 8, .width = 8, .group = 2, .points = 5, .type = type, .purpose = NN_TRAIN};
         nn_program *p = compile_net(&params, &options);
         size_t bytes = params->gradient_count * sizeof(float);
         float *expected = malloc(bytes);
@@ -207,7 +238,8 @@ static void backward_reads_only_what_is_kept_for_it(void **state)
 static void training_steps(nn_type type, int steps, nn_params **params)
 {
     *params = NULL;
-    const nn_options options = {.batch = 2, .height = 16, .width = 8, .type = type, .purpose = NN_TRAIN};
+    const nn_options options = {
+        .batch = 4, .height = 16, .width = 8, .group = 2, .points = 5, .type = type, .purpose = NN_TRAIN};
     nn_program *p = compile_net(params, &options);
     for (int s = 0; s < steps; s++) {
         assert_int_equal(nn_forward(p), OK);
@@ -253,7 +285,7 @@ static void programs_of_several_sizes_and_types_share_parameters(void **state)
 {
     (void)state;
     nn_params *params = NULL;
-    nn_options options = {.batch = 3, .height = 16, .width = 16};
+    nn_options options = {.batch = 3, .height = 16, .width = 16, .points = 5};
     nn_program *three = compile_net(&params, &options);
     options.batch = 1;
     nn_program *one = compile_net(&params, &options);
@@ -276,7 +308,7 @@ static void inference_needs_less_memory_than_training(void **state)
 {
     (void)state;
     nn_params *params = NULL;
-    nn_options options = {.batch = 4, .height = 64, .width = 64};
+    nn_options options = {.batch = 4, .height = 64, .width = 64, .points = 5};
     nn_program *infer = compile_net(&params, &options);
     options.purpose = NN_TRAIN;
     nn_program *train = compile_net(&params, &options);

@@ -59,7 +59,7 @@ static void fill(nn_program *p, int first, int count)
 static status run_steps(const ranks *r, nn_program *p, nn_params *params)
 {
     nn_adam *adam;
-    status s = nn_adam_new(params, &(nn_adam_options){0.9f, 0.99f, 1e-3f, 1}, &adam);
+    status s = nn_adam_new(params, &(nn_adam_options){0.9f, 0.99f, 1e-3f, 1, 0.1f}, &adam);
     int count = BATCH / ranks_count(r);
     for (int i = 0; s == OK && i < STEPS; i++) {
         fill(p, ranks_index(r) * count, count);

@@ -7,41 +7,18 @@ Small MERLiN variants, written in PyTorch in double precision beside src/model: 
 Adam with clipping and two learning rates), the losses after it, and the outputs in evaluation mode. Inputs and initial
 parameters are not stored: both sides draw them from the same hash.
 """
-import json
 import math
 import os
-import struct
 
 import torch
 import torch.nn.functional as F
+
+from numbers_by_name import Params, as_float, hashed, write_safetensors
 
 SIZE, BATCH, STRIDE, WIDTH = 64, 2, 8, 8  # outputs are kept at every STRIDE-th pixel
 LEVELS, LIGHT_POWER, FOV = 5, 5.95, 60.0
 RATE, CLIP, EPSILON = 0.01, 1.0, 1e-3
 WEIGHTS = {"normal": 2.0}
-
-
-# ---- numbers that test_reference.c makes in the same way ----
-
-def hashed(name, count):
-    """count numbers in [-1, 1): FNV-1a of the name, the index, MurmurHash3's finalizer."""
-    seed = 2166136261
-    for byte in name.encode():
-        seed = (seed ^ byte) * 16777619 & 0xFFFFFFFF
-    out = []
-    for i in range(count):
-        x = (seed + i * 0x9E3779B9) & 0xFFFFFFFF
-        x ^= x >> 16
-        x = x * 0x85EBCA6B & 0xFFFFFFFF
-        x ^= x >> 13
-        x = x * 0xC2B2AE35 & 0xFFFFFFFF
-        x ^= x >> 16
-        out.append((x >> 8) * 2.0**-23 - 1)
-    return torch.tensor(out, dtype=torch.float64)
-
-
-def as_float(x):
-    return x.to(torch.float32).to(torch.float64)
 
 
 def image_input(name, channels, scale, shift):
@@ -66,22 +43,6 @@ def make_inputs():
     inputs["light"] = hashed("light", BATCH * 3).reshape(BATCH, 3)
     inputs["light_position"] = as_float(0.5 * hashed("light_position", BATCH * 3)).reshape(BATCH, 3)
     return inputs
-
-
-class Params(dict):
-    """Parameters by name, made when the network first asks for them."""
-
-    def get(self, name, *shape):
-        if name not in self:
-            u = hashed(name, math.prod(shape)).reshape(shape)
-            if len(shape) > 1:
-                u = u * math.sqrt(6.0 / math.prod(shape[1:]))
-            elif name.endswith(".running_var") or name.endswith("norm.weight"):
-                u = 1 + 0.2 * u
-            else:
-                u = 0.2 * u
-            self[name] = as_float(u).requires_grad_(".running_" not in name)
-        return self[name]
 
 
 # ---- the network of src/model ----
@@ -244,19 +205,6 @@ def all_losses(out, inputs):
 
 
 # ---- one variant's file ----
-
-def write_safetensors(path, tensors):
-    header, data = {}, b""
-    for name, t in tensors.items():
-        half = name.startswith("step.")
-        raw = t.detach().contiguous().to(torch.float16 if half else torch.float32).numpy().tobytes()
-        header[name] = {"dtype": "F16" if half else "F32", "shape": list(t.shape),
-                        "data_offsets": [len(data), len(data) + len(raw)]}
-        data += raw
-    text = json.dumps(header, separators=(",", ":")).encode()
-    with open(path, "wb") as f:
-        f.write(struct.pack("<Q", len(text)) + text + data)
-
 
 def optimize(params, losses):
     total = sum(WEIGHTS.get(k, 1.0) * v for k, v in losses.items())

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Maps each operation to its implementation on the CPU: a row of a table, and functions that unpack a step's tensors
  * for the kernels of nn/cpu/kernels/kernels.h. */
+#include "nn/cpu/group_ops.h"
 #include "nn/cpu/kernels/kernels.h"
 #include "nn/cpu/kernels/steps.h"
 #include "nn/cpu/tuning.h"
@@ -325,7 +326,8 @@ enum { READS_IN = 1, READS_OUT = 2 };
 typedef struct operation {
     status (*create)(nn_step *step); /* for a step with a state of its own, instead of the fields below */
     status (*forward)(nn_step *step), (*backward)(nn_step *step);
-    unsigned reads; /* what backward reads apart from out's gradient */
+    unsigned reads;                                  /* what backward reads apart from out's gradient */
+    size_t (*backward_scratch)(const nn_step *step); /* bytes that backward uses; NULL: none */
 } operation;
 
 static const operation operations[] = {
@@ -349,6 +351,25 @@ static const operation operations[] = {
     [OP_SPATIAL_MEAN] = {.forward = spatial_mean_forward, .backward = spatial_mean_backward},
     [OP_NORMALIZE] = {.forward = normalize_forward, .backward = normalize_backward, .reads = READS_IN | READS_OUT},
     [OP_RECIPROCAL] = {.forward = reciprocal_forward, .backward = reciprocal_backward, .reads = READS_OUT},
+    [OP_GROUP_MAX] = {.forward = group_max_forward, .backward = group_max_backward, .reads = READS_IN | READS_OUT},
+    [OP_GROUP_MEAN] = {.forward = group_mean_forward, .backward = group_mean_backward, .reads = READS_IN},
+    [OP_GROUP_SPREAD] = {.forward = group_spread_forward, .backward = group_spread_backward, .reads = READS_IN},
+    [OP_GROUP_REPEAT] = {.forward = group_repeat_forward, .backward = group_repeat_backward},
+    [OP_GROUP_ATTENTION] = {.forward = group_attention_forward,
+                            .backward = group_attention_backward,
+                            .reads = READS_IN},
+    [OP_GROUP_POOL] = {.forward = group_pool_forward,
+                       .backward = group_pool_backward,
+                       .reads = READS_IN,
+                       .backward_scratch = group_pool_scratch},
+    [OP_LAYER_NORM] = {.forward = layer_norm_forward,
+                       .backward = layer_norm_backward,
+                       .reads = READS_IN,
+                       .backward_scratch = layer_norm_scratch},
+    [OP_GATHER] = {.forward = gather_forward,
+                   .backward = gather_backward,
+                   .reads = READS_IN,
+                   .backward_scratch = gather_scratch},
     [OP_RENDER] = {.forward = render_forward, .backward = render_backward, .reads = READS_IN},
     [OP_ENVIRONMENT] = {.forward = environment_forward, .backward = environment_backward, .reads = READS_IN},
     [OP_MASKED_L2] = {.forward = masked_l2_forward, .backward = masked_l2_backward, .reads = READS_IN},
@@ -379,6 +400,7 @@ static status kernel_create(nn_step *step)
         return fail(MERLIN_WRONG_USE, "%d channels, the CPU's limit is %d", step->out.c, CPU_MAX_CHANNELS);
     step->reads_in = row->reads & READS_IN;
     step->reads_out = row->reads & READS_OUT;
+    if (row->backward_scratch && step->backs) step->backward_scratch = row->backward_scratch(step);
     return OK;
 }
 

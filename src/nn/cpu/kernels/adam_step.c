@@ -10,6 +10,7 @@ void cpu_adam(const adam_step *step, size_t count, float *value, const float *gr
 {
     float b1 = step->beta1, b2 = step->beta2, rate = step->learning_rate / step->correction1;
     float second = 1 / step->correction2, scale = step->gradient_scale, epsilon = step->epsilon;
+    const float kept = step->kept;
 #pragma omp parallel for simd schedule(static) if (count > CPU_PARALLEL_MIN)
     for (size_t i = 0; i < count; i++) {
         float g = gradient[i] * scale;
@@ -17,7 +18,7 @@ void cpu_adam(const adam_step *step, size_t count, float *value, const float *gr
         float v = b2 * moment2[i] + (1 - b2) * g * g;
         moment1[i] = m;
         moment2[i] = v;
-        value[i] -= rate * m / (sqrtf(v * second) + epsilon);
+        value[i] = kept * value[i] - rate * m / (sqrtf(v * second) + epsilon);
     }
 }
 

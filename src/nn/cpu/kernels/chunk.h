@@ -20,7 +20,19 @@
 enum {
     CPU_CHUNK = 1024,         /* elements; three or four such buffers fit the first-level cache */
     CPU_PARALLEL_MIN = 16384, /* below this many elements, waking a second thread costs more than it saves */
+    CPU_PARTS = 64, /* parts whose sums are added in their order, so that a sum does not depend on the threads */
 };
+
+/* Computes the sums of CPU_PARTS rows of so many numbers. */
+static inline void cpu_sum_parts(const float *parts, size_t count, float *sum)
+{
+    for (size_t i = 0; i < count; i++) {
+        double total = 0;
+        for (size_t part = 0; part < CPU_PARTS; part++)
+            total += (double)parts[part * count + i];
+        sum[i] = (float)total;
+    }
+}
 
 static inline size_t cpu_element_size(const cpu_tensor *t)
 {
