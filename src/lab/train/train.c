@@ -184,7 +184,7 @@ static status build(run *r)
                           .type = c->type,
                           .purpose = NN_TRAIN,
                           .together = r->options->together};
-    nn_adam_options adam = {(float)c->beta1, (float)c->beta2, 1e-8f, (float)c->clip_norm};
+    nn_adam_options adam = {(float)c->beta1, (float)c->beta2, 1e-8f, (float)c->clip_norm, (float)c->weight_decay};
     train_source source = {r->data,           c,       r->model.input_global, is_lit_by_both(r), is_lit_by_any(r),
                            r->training_count, r->batch};
     status s = model_build(&r->model, part_of(c), &r->graph);

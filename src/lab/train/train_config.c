@@ -43,6 +43,7 @@ static const optional optionals[] = {
     {"relight_brdf_weight", 1e4, offsetof(train_config, relight_brdf_weight), 0},
     {"ssim_weight", 1e4, offsetof(train_config, ssim_weight), 0},
     {"dark_target", 1, offsetof(train_config, dark_target), 0},
+    {"weight_decay", 1, offsetof(train_config, weight_decay), 0},
     {"average_decay", 0.999999, offsetof(train_config, average_decay), 0},
 };
 enum { OPTIONALS = sizeof optionals / sizeof *optionals };

@@ -99,9 +99,9 @@ static void wrong_configurations_are_refused_by_key(void **unused)
 static void faults_left_out_are_none_and_stay_left_out(void **unused)
 {
     (void)unused;
-    static const char *const keys[] = {"camera_turn", "distance_jitter", "background_leak", "outline_error",
-                                       "jpeg",        "perfect_camera",  "average_decay",   "relight_brdf_weight",
-                                       "dark_target", "albedo_weight"};
+    static const char *const keys[] = {
+        "camera_turn",   "distance_jitter", "background_leak",     "outline_error", "jpeg",         "perfect_camera",
+        "average_decay", "weight_decay",    "relight_brdf_weight", "dark_target",   "albedo_weight"};
     model_config m;
     train_config t, again;
     char *good = shipped();
@@ -119,6 +119,7 @@ static void faults_left_out_are_none_and_stay_left_out(void **unused)
     t.jpeg = 0.75;
     t.perfect_camera = 0.375;
     t.average_decay = 0.9375;
+    t.weight_decay = 0.03125;
     t.relight_brdf_weight = 2;
     t.dark_target = 0.0625;
     training = train_config_write(&t);
