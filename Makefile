@@ -3,11 +3,11 @@
 MERLIN = build/release/merlin
 OUT = out/demo
 
-.PHONY: all build demo install wheel deb test-deb blender test test-debian product asan debug check format fuzz setup-build setup-test setup-check clean
+.PHONY: all build demo install wheel deb test-deb blender web test test-debian product asan debug check format fuzz setup-build setup-test setup-check setup-web clean
 
 all: build
 
-setup-build setup-test setup-check: setup-%:
+setup-build setup-test setup-check setup-web: setup-%:
 	@tools/install-packages $*
 
 build: setup-build
@@ -52,6 +52,12 @@ blender:
 	@mkdir -p build
 	@tools/pack-blender build/merlin-blender.zip
 	@echo "build/merlin-blender.zip"
+
+# The page that estimates photographs in the browser, as a folder for any web server; npm (apt-get install npm) fetches ONNX Runtime.
+WEB = build/web
+web: setup-web build
+	@tools/make-web build/release "$(WEB)"
+	@echo "$(WEB): for any web server, such as python3 -m http.server -d $(WEB)"
 
 test: setup-test
 	cmake --preset release -DBUILD_TESTING=ON

@@ -5,7 +5,7 @@
 #     awk -f web/page.awk -v folder=web -v out=view_page.c     as src/view/view_page.h declares it
 #     awk -f web/page.awk -v folder=web/serve -v header=serve/serve_texts.h -v name=serve_page -v out=serve_page.c
 #
-# Another page than index.html is named by -v page_file=NAME.
+# Another page than index.html is named by -v page_file=NAME. A line <!--part FILE--> stands for that file, which pages share.
 #
 # Each module becomes a function that gives back what it exports, those first that others import, so that names are the
 # module's own. Imports and exports stand at the beginning of a line, an export before what it exports.
@@ -100,6 +100,7 @@ BEGIN {
     for (i = 1; i < n; i++) {
         line = page[i]
         if (line == "/*style*/") put_lines(read("style.css"))
+        else if (line ~ /^<!--part .*-->$/) put_lines(read(substr(line, 10, length(line) - 12)))
         else if (line == "/*script*/") put_lines(module("main.js"))
         else put(line)
     }

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "model/model.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "model/blocks.h"
+#include "model/sh_bands.h"
 #include "nn/safetensors.h"
 #include "optics/light.h"
 
@@ -51,58 +51,6 @@ typedef struct network {
     nn_node *lights, *visibility;            /* NULL unless "lighting" is "any" */
     nn_node *direct, *indirect, *relit_direct, *relit_brdf;
 } network;
-
-/* Encodes without fminf and fmaxf, which would be library calls because of what they promise about NaN. */
-void model_encode_image(const float *linear, float *encoded, size_t n)
-{
-    for (size_t i = 0; i < n; i++) {
-        float v = linear[i] > 0 ? linear[i] : 0;
-        encoded[i] = sqrtf(v < MODEL_BRIGHTEST ? v : MODEL_BRIGHTEST);
-    }
-}
-
-float model_encode_strength(float strength)
-{
-    return log1pf(strength);
-}
-
-float model_decode_strength(float code)
-{
-    return code > 0 ? expm1f(code) : 0;
-}
-
-void model_sight(const camera *lens, bool flash, int size, float *out)
-{
-    const camera c = lens ? (camera){size, size, lens->fov, lens->slant} : (camera){0};
-    for (int y = 0; y < size; y++)
-        for (int x = 0; x < size; x++, out += MODEL_SIGHT) {
-            vec3 ray = lens ? camera_point(&c, (float)x + 0.5f, (float)y + 0.5f, 1) : vec3_make(0, 0, -1);
-            out[0] = ray.x;
-            out[1] = ray.y;
-            out[2] = lens != NULL;
-            out[3] = flash;
-        }
-}
-
-/* Factors from radiance in bands 0, 1 and 2 to the light of a diffuse white surface, divided by the root of the
- * sphere's area: then the mean over all normals of the squared light is the sum of the squared code. */
-static const float sh_scale[3] = {0.28209479f, 0.18806319f, 0.07052370f};
-enum { SH_BANDS = 3 };
-static const int sh_first[SH_BANDS] = {0, 3, 12}, sh_count[SH_BANDS] = {3, 9, 15};
-
-void model_encode_sh(const float sh[9][3], float code[MODEL_SH])
-{
-    for (int band = 0; band < SH_BANDS; band++)
-        for (int i = sh_first[band]; i < sh_first[band] + sh_count[band]; i++)
-            code[i] = sh[i / 3][i % 3] * sh_scale[band];
-}
-
-void model_decode_sh(const float code[MODEL_SH], float sh[9][3])
-{
-    for (int band = 0; band < SH_BANDS; band++)
-        for (int i = sh_first[band]; i < sh_first[band] + sh_count[band]; i++)
-            sh[i / 3][i % 3] = code[i] / sh_scale[band];
-}
 
 /* Adds model_decode_sh to the graph. */
 static nn_node *decode_sh(nn_graph *g, nn_node *code)

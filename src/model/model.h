@@ -37,9 +37,9 @@
 #ifndef MERLIN_MODEL_MODEL_H
 #define MERLIN_MODEL_MODEL_H
 
+#include "model/model_codes.h"
 #include "model/model_config.h"
 #include "nn/nn.h"
-#include "optics/camera.h"
 
 enum { MODEL_SIZE_MULTIPLE = 32, MODEL_LOSSES = 18 };
 
@@ -57,29 +57,6 @@ enum {
     MODEL_LIGHTS_REST = 8,     /* model_encode_sh of all other light: MODEL_SH */
     MODEL_LIGHTS = 8 + MODEL_SH
 };
-
-/* Largest radiance that the network distinguishes: photographs whose white is higher are scaled down first. */
-#define MODEL_BRIGHTEST 4.0f
-
-/* Encodes the input "image": the square root of radiance clamped to [0, MODEL_BRIGHTEST], which distributes the
- * network's precision as the eye (and sRGB) does. Radiance is in the unit of the lights' power; where a photograph is
- * saturated (radiance 1 in the published data, up to 2.5 in training) it is constant. n values; in place is allowed. */
-void model_encode_image(const float *linear, float *encoded, size_t n);
-
-/* Encodes an environment's nine coefficients (optics/sh.h): scaled by the clamped cosine's factor of their band, so
- * that the mean square of a difference is that of a white surface's radiance over all normals; model_decode_sh is the
- * inverse. In place is allowed. */
-void model_encode_sh(const float sh[9][3], float code[MODEL_SH]);
-void model_decode_sh(const float code[MODEL_SH], float sh[9][3]);
-
-/* Encode a light's strength as ln(1 + strength), and back; not below 0. */
-float model_encode_strength(float strength);
-float model_decode_strength(float code);
-
-/* Fills in the input "sight", what is known of how a photograph was taken: for a picture of size × size, MODEL_SIGHT
- * values a pixel. lens NULL: unknown. flash: the photograph is lit by a flash alone, as far as is known. */
-enum { MODEL_SIGHT = 4 };
-void model_sight(const camera *lens, bool flash, int size, float *out);
 
 /* Names of the relighting decoder's inputs that do not depend on the light, ended by NULL: the encoder's features at
  * levels 0 to 4 and the material decoder's at 0 to 3, level i of widths[i] channels at 1/2^(i+1) of the size. A variant

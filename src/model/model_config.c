@@ -105,8 +105,3 @@ char *model_config_write(const model_config *c)
         w[4], gi[0], gi[1], gi[2], gi[3], gi[4], e[0], e[1], e[2], e[3], e[4], m[0], m[1], m[2], m[3]);
     return length < 0 ? NULL : text;
 }
-
-int model_light_size(const model_config *config)
-{
-    return config->lighting == MODEL_LIGHT_BOTH ? 3 + MODEL_SH : 3;
-}

@@ -38,7 +38,4 @@ status model_config_read(const char *path, model_config *out);
 /* Returns malloc'ed JSON that model_config_parse can read; NULL if memory ran out. */
 char *model_config_write(const model_config *config);
 
-/* Returns the length of the lighting code: 3 or 30. */
-int model_light_size(const model_config *config);
-
 #endif

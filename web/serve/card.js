@@ -3,6 +3,7 @@
 import { follow, remove, submit } from "./api.js";
 import { lamps } from "./lamps.js";
 import { correct } from "./mask.js";
+import { find_object } from "./object.js";
 import { bytes, make, say } from "./parts.js";
 
 const stages = {
@@ -105,7 +106,7 @@ export class Card {
     }
 
     async repaint() {
-        const painted = await correct(this.photo, this.painted);
+        const painted = await correct(this.photo, this.painted, find_object);
         if (!painted) return this.mask.focus();
         this.painted = painted;
         if (this.job) remove(this.job).catch(() => {});

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // The mask, corrected by a brush: what is not the object is veiled, and strokes add to it or take from it.
-import { follow, remove, submit } from "./api.js";
 import { byId, say } from "./parts.js";
 
 const dialog = byId("mask"), canvas = byId("mask-picture"), frame = byId("mask-frame"), words = byId("mask-words");
@@ -191,12 +190,6 @@ addEventListener("resize", () => { if (dialog.open && drawn) scale(0); });
 
 // ---- the whole ----
 
-async function picture_of(job, name) {
-    const file = job.files.find((one) => one.name === name);
-    const answer = await fetch(file.url);
-    return createImageBitmap(await answer.blob());
-}
-
 // White on the object and black beside it, made opaque on it and clear beside it.
 async function opacity(mask) {
     const clear = new OffscreenCanvas(mask.width, mask.height), context = clear.getContext("2d");
@@ -230,18 +223,16 @@ function ready(is) {
     words.hidden = is;
 }
 
-async function load(file, mask) {
-    const job = await follow(await submit("mask", [["photo", file]], null), (told) => {
-        words.textContent = told.state === "queued" && told.position ? `Waiting: ${told.position} before it` : "Finding the object";
-    });
-    if (job.state !== "done") throw new Error(job.error || "The search for the object was cancelled.");
-    photo = await picture_of(job, "photo.png");
-    found = await opacity(mask ? await createImageBitmap(mask) : await picture_of(job, "mask.png"));
-    remove(job).catch(() => {});
+async function load(file, mask, find) {
+    const seen_in = await find(file, (told) => { words.textContent = told; });
+    photo = seen_in.photo;
+    found = await opacity(mask ? await createImageBitmap(mask) : seen_in.mask);
 }
 
-// Lets a person correct the mask of a photograph; mask: the one that was painted before, or null. Gives a file, or null.
-export function correct(file, mask) {
+// Lets a person correct the mask of a photograph; mask: the one that was painted before, or null. find(file, told) gives
+// the photograph and the mask that is found in it, pictures of the same size, and tells what it waits for. Gives a file,
+// or null.
+export function correct(file, mask, find) {
     photo = found = drawn = stroke = null;
     strokes = [];
     seen = down = false;
@@ -253,7 +244,7 @@ export function correct(file, mask) {
     dialog.showModal();
     const opened = {};
     const given = new Promise((done) => { finish = opened.finish = done; });
-    load(file, mask).then(() => {
+    load(file, mask, find).then(() => {
         if (finish !== opened.finish || !dialog.open) return;
         canvas.width = photo.width;
         canvas.height = photo.height;
