@@ -32,6 +32,13 @@ _merlin() {
     fi
     case $previous in
     --by) mapfile -t COMPREPLY < <(compgen -W "brdf network" -- "$current") ;;
+    --rti) mapfile -t COMPREPLY < <(compgen -W "ptm lrgb hsh rbf" -- "$current") ;;
+    --normal-y) mapfile -t COMPREPLY < <(compgen -W "up down" -- "$current") ;;
+    --maps)
+        local before=
+        [[ $current != *,* ]] || before=${current%,*},
+        mapfile -t COMPREPLY < <(compgen -P "$before" -W "albedo normal roughness smoothness ao orm height height32 alpha materialx all" -- "${current##*,}")
+        ;;
     --format) mapfile -t COMPREPLY < <(compgen -W "png jpg" -- "$current") ;;
     --method) mapfile -t COMPREPLY < <(compgen -W "ls robust near semi uncalibrated auto" -- "$current") ;;
     --integrate) mapfile -t COMPREPLY < <(compgen -W "ls edges" -- "$current") ;;

@@ -36,6 +36,12 @@ function __merlin_previous
     contains -- $tokens[-1] $argv
 end
 
+# The words, each behind what a list has up to its last comma.
+function __merlin_list
+    set -l before (string match --regex '^.*,' -- (commandline -ct))
+    printf '%s\n' "$before"$argv
+end
+
 for program in merlin merlin-lab
     complete -c $program -n 'test (count (__merlin_words)) = 0' -f -a '(__merlin_commands)'
     complete -c $program -n 'test (count (__merlin_words)) = 0' -f -a help -d 'explain a command'
@@ -45,6 +51,9 @@ for program in merlin merlin-lab
     complete -c $program -n 'test (count (__merlin_words)) = 1; and test (__merlin_words)[1] = info' -a 'merlin-any merlin-point merlin-env'
     complete -c $program -n 'test (count (__merlin_words)) -ge 1; and string match --quiet -- "-*" (commandline -ct)' -f -a '(__merlin_options)'
     complete -c $program -n '__merlin_previous --by' -f -a 'brdf network'
+    complete -c $program -n '__merlin_previous --rti' -f -a 'ptm lrgb hsh rbf'
+    complete -c $program -n '__merlin_previous --normal-y' -f -a 'up down'
+    complete -c $program -n '__merlin_previous --maps' -f -a '(__merlin_list albedo normal roughness smoothness ao orm height height32 alpha materialx all)'
     complete -c $program -n '__merlin_previous --format' -f -a 'png jpg'
     complete -c $program -n '__merlin_previous --method' -f -a 'ls robust near semi uncalibrated auto'
     complete -c $program -n '__merlin_previous --integrate' -f -a 'ls edges'

@@ -7,8 +7,8 @@
  *         fprintf(stderr, "%s\n", merlin_error());
  *
  * All maps show the square around the object. Outside the object textures continue smoothly, so that they have no dark
- * edge at small sizes, and heights are 0; alpha.png shows where the object is. export.json contains the numbers that
- * programs need. */
+ * edge at small sizes, and heights, which are on the photograph's grid and so in perspective, are 0; alpha.png shows
+ * where the object is. export.json contains the numbers that programs need. */
 #ifndef MERLIN_EXPORT_H
 #define MERLIN_EXPORT_H
 
@@ -51,7 +51,8 @@ typedef struct merlin_export_facts {
     int side;     /* side of all pictures in pixels */
     float relief; /* height difference between the lowest and the highest point in widths of the square: the scale of a
                    * displacement by height.png on a plane of width 1 */
-    float width;  /* width of the square at the object's mean distance, in the maps' unit */
+    float width;  /* width of the square at the object's mean distance, in the maps' unit, in which a photograph's or
+                   * captured object is about 1 from the camera */
 } merlin_export_facts;
 
 /* Writes the files into a folder, which is created if necessary: all of them or, after a failure, none. params NULL:

@@ -26,7 +26,7 @@ static const char help[] =
     "Writes the maps of a folder made by merlin estimate or merlin stereo (or its maps.exr) as one HTML file, which a\n"
     "browser opens from the disk, offline: the object under lamps that follow the pointer and in rooms, beside the\n"
     "photograph, turned about, and every map. Light falls as merlin relight --no-bounces has it.\n\n"
-    "  -o, --output FILE    where to, ends in .html (default: viewer.html in DIR)\n"
+    "  -o, --output FILE    where to, ends in .html or .htm (default: viewer.html in DIR)\n"
     "      --size N         pixels a side at most, 64 to 4096 (default 2048); larger squares around the object are\n"
     "                       made smaller\n"
     "      --json           a report as JSON on standard output\n"
@@ -44,7 +44,7 @@ static status check_output_name(const char *path)
 {
     static const char *const endings[] = {".html", ".htm", NULL};
     if (file_ends_in_any(file_name_of(path), endings)) return OK;
-    return fail(MERLIN_WRONG_USE, "-o %s: the page's name ends in .html", path);
+    return fail(MERLIN_WRONG_USE, "-o %s: the page's name ends in .html or .htm", path);
 }
 
 static status parse(int *argc, char ***argv, request *r)

@@ -300,6 +300,12 @@ static void strengths_stand_behind_directions(void **state)
         assert_non_null(strstr(lights.note, "strength"));
         light_list_free(&lights);
     }
+    const char *red = "0 0 1 2 0 0\n0 1 0 0 0 0.5\n"; /* coloured LEDs */
+    assert_int_equal(light_list_parse(red, strlen(red), "l.txt", &lights), OK);
+    assert_float_equal(lights.intensity[0].x, 2, 0);
+    assert_float_equal(lights.intensity[0].y, 0, 0);
+    light_list_free(&lights);
+    assert_refused("0 0 1 1 1 1\n0 1 0 0 0 0\n", "lights.txt:2: the light is black");
     assert_refused("0 0 1 0\n0 1 0 1\n", "lights.txt:1: an intensity must be above zero");
     assert_refused("0 0 1 -1 2 2\n0 1 0 1 1 1\n", "lights.txt:1: an intensity");
     assert_refused("0 0 1 1 1\n0 1 0 1 1\n", "found 5 words");

@@ -70,6 +70,11 @@ for shell in "${shells[@]}"; do
     completes "$shell" merlin-env merlin relight photo.png --model merlin-e
     completes "$shell" network merlin relight photo.png --by n
     completes "$shell" stereo merlin help st
+    completes "$shell" hsh merlin relight photo.png --rti h
+    completes "$shell" down merlin export photo.merlin --normal-y d
+    completes "$shell" height32 merlin export photo.merlin --maps hei
+    # zsh's own function for lists is asked about their first word alone
+    [[ $shell == zsh ]] || completes "$shell" albedo,normal merlin export photo.merlin --maps albedo,nor
 done
 completes bash network merlin relight photo.png --by = # as the shell parts --by=
 completes bash network merlin relight photo.png --by = n

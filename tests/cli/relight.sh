@@ -178,6 +178,11 @@ refuses 2 '--near has none' relight disc.merlin --dome 4 --near --lp
 refuses 2 'give --near, too' relight disc.merlin --dome 4 --by network
 refuses 2 '--radius is of --near' relight disc.merlin --dome 4 --radius 2
 refuses 2 '--format' relight disc.merlin --light 0,0,0 --format tif
+refuses 2 "an --orbit's frames are PNG" relight disc.merlin --orbit 4 --format jpg
+printf '0.5 0.2 -0.4 1 0 0\n' >led.txt
+succeeds led relight disc.merlin --lights led.txt -o led
+relight disc.merlin --light 0.5,0.2,-0.4 --color 1,0,0 -o led_too >stdout || complain "--color failed"
+cmp -s led/relit.png led_too/relit.png || complain "a list's red LED is another than --color's"
 refuses 2 '--matte is of --by brdf' relight disc.merlin --light 0,0,0 --by network --matte
 
 echo "an orbit becomes frames and animations"

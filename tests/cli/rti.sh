@@ -64,6 +64,7 @@ refuses 2 'wants ptm, lrgb, hsh or rbf' relight disc.merlin --dome 9 --rti xyz
 refuses 2 '9 pictures or more' relight disc.merlin --dome 8 --rti hsh
 refuses 2 '300 pictures or fewer' relight disc.merlin --dome 301 --rti rbf
 refuses 2 'leave out' relight disc.merlin --dome 9 --rti hsh --lp
+refuses 2 'leave out' relight disc.merlin --dome 9 --rti hsh --format png
 refuses 2 'leave out' relight disc.merlin --dome 9 --rti hsh --light 0,0,0
 refuses 2 'give --rti ptm or lrgb' relight disc.merlin --dome 9 --rti hsh -o hsh.ptm
 refuses 2 'wide.ptm is a file of --rti' relight disc.merlin --dome 9 -o wide.ptm

@@ -189,6 +189,8 @@ mkdir folder.ply
 refuses 1 'folder.ply' stereo dome --method ls --mesh second.ply --mesh folder.ply -o none
 mkdir taken.mtl # found only when all is moved into place
 refuses 1 'taken.mtl' stereo dome --method ls --mesh taken.obj -o none
+sed 's/^\(dome_.*\)$/\1 1 0 0/' dome/dome.lp >red.lp
+refuses 1 'red.lp:[0-9]*: the light has no red, green or blue' stereo dome --lights red.lp -o none
 echo mine >beside.png
 refuses 1 'beside.obj: beside.png is no part of an earlier one' stereo dome --method ls --mesh beside.obj -o none
 [ "$(cat beside.png)" = mine ] || complain "beside.png was replaced"

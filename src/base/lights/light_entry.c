@@ -34,7 +34,7 @@ static status take_number(const light_parser *t, const light_entry *w, size_t k,
     if (k < 3 && !(fabs(word->value) <= LARGEST))
         return fail(MERLIN_BAD_INPUT, "%s:%d: %.*s is out of range (±%g)", t->where, w->line, length, word->at,
                     LARGEST);
-    if (k >= 3 && !(word->value > 0 && word->value < BRIGHTEST))
+    if (k >= 3 && !((word->value > 0 || (word->value == 0 && w->count > 4)) && word->value < BRIGHTEST))
         return fail(MERLIN_BAD_INPUT, "%s:%d: an intensity must be above zero, not %.*s", t->where, w->line, length,
                     word->at);
     *out = (float)word->value;
@@ -56,6 +56,8 @@ status light_parser_add(light_parser *t, const light_entry *w)
         if (s != OK) return s;
     }
     if (w->count == 4) v[4] = v[5] = v[3];
+    if (v[3] + v[4] + v[5] == 0)
+        return fail(MERLIN_BAD_INPUT, "%s:%d: the light is black: an intensity must be above zero", t->where, w->line);
     size_t i = list->count;
     list->at[i] = vec3_of(v);
     list->intensity[i] = vec3_of(v + 3);

@@ -32,6 +32,12 @@ typedef struct exposing {
     float ev;
 } exposing;
 
+/* --format */
+typedef struct formatting {
+    bool given;
+    merlin_image_format format;
+} formatting;
+
 typedef struct request {
     const char *input, *list, *mask, *model, *output, *env;
     float rotate, env_exposure, radius;
@@ -39,7 +45,7 @@ typedef struct request {
     merlin_params params;
     merlin_relighting how;
     exposing exposing;
-    merlin_image_format format;
+    formatting format;
     int orbit, frame;
     relight_dome dome;
     relight_rti rti;
@@ -59,11 +65,12 @@ static status take_exposing(const char *text, void *into)
 
 static status take_format(const char *text, void *into)
 {
-    merlin_image_format *format = into;
+    formatting *f = into;
+    f->given = true;
     if (strcmp(text, "png") == 0)
-        *format = MERLIN_PNG;
+        f->format = MERLIN_PNG;
     else if (strcmp(text, "jpg") == 0 || strcmp(text, "jpeg") == 0)
-        *format = MERLIN_JPEG;
+        f->format = MERLIN_JPEG;
     else
         return fail(MERLIN_WRONG_USE, "--format wants png or jpg, not \"%s\"", text);
     return OK;
@@ -111,7 +118,7 @@ static status check_dome(request *r)
     if (r->rti.file && !r->rti.wanted)
         return fail(MERLIN_WRONG_USE, "%s is a file of --rti ptm or lrgb with a --dome, or of no kind that is known",
                     r->output);
-    const bool other = r->lamps.count || r->list || r->orbit || r->dome.lp || r->format == MERLIN_JPEG;
+    const bool other = r->lamps.count || r->list || r->orbit || r->dome.lp || r->format.given;
     return r->rti.wanted ? relight_rti_check(&r->rti, count, other) : OK;
 }
 
@@ -175,6 +182,9 @@ static status check(request *r)
     if (r->together && r->orbit && !r->env)
         return fail(MERLIN_WRONG_USE, "--together goes with an --orbit of an --env, beside which its lamps stand");
     if (r->frame && r->orbit == 0) return fail(MERLIN_WRONG_USE, "--frame is the side of an --orbit's frames");
+    const bool whole = r->lamps.count || r->list || r->dome.count || r->env || r->found;
+    if (r->format.given && !whole)
+        return fail(MERLIN_WRONG_USE, "--format is of pictures of the photograph's size; an --orbit's frames are PNG");
     status s = check_dome(r);
     if (s == OK) s = check_standard_output(r);
     if (s == OK) s = check_photo(r);
@@ -327,7 +337,7 @@ static relight_job job_of(const request *r, const char *output)
                        .together = r->together,
                        .how = r->how,
                        .matte = r->matte || r->captured,
-                       .format = r->format,
+                       .format = r->format.format,
                        .ev = r->exposing.ev,
                        .dome = r->dome,
                        .rti = r->rti,

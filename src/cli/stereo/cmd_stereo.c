@@ -65,8 +65,8 @@ static const char help[] =
     "  -q, --quiet          no other output than errors\n"
     "  -h, --help           this text\n\n"
     "Writes maps.exr, normal.png, albedo.png, depth.png, mask.png, error.png, overview.png, report.json and meshes.\n"
-    "Depth and meshes are in the unit of the lights' positions with --near; from afar they are in pixels (mesh.glb is\n"
-    "scaled to a picture one unit large).\n";
+    "Depth and meshes are in the unit of the lights' positions with --near; from afar they are in pixels (.glb and\n"
+    ".usda have a scale by which the picture is one unit large).\n";
 
 typedef struct request {
     const char *input, *output, *weights;

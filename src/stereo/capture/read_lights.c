@@ -99,12 +99,27 @@ static status set_directions(const char *path, const light_list *list, merlin_ca
     return OK;
 }
 
+/* Copies the intensities; pictures are divided by them, so that a light of a pure colour is refused. */
+static status set_intensities(const char *path, const light_list *list, merlin_capture *c)
+{
+    for (size_t i = 0; i < list->count && list->intensity; i++) {
+        const vec3 e = list->intensity[i];
+        if (!(e.x > 0 && e.y > 0 && e.z > 0))
+            return fail(MERLIN_BAD_INPUT,
+                        "%s:%d: the light has no red, green or blue (an intensity of 0); stereo wants all three of "
+                        "every light",
+                        path, list->line[i]);
+        vec3_put(e, c->light[i].intensity);
+    }
+    return OK;
+}
+
 status pst_set_lights(const char *path, const light_list *list, const merlin_capture_files *options, merlin_capture *c)
 {
     c->lighting = options->near_lights ? MERLIN_NEAR_LIGHTS : MERLIN_DISTANT_LIGHTS;
     c->intensities_known = true; /* a list of lights without intensities means equal ones */
-    for (size_t i = 0; i < list->count && list->intensity; i++)
-        vec3_put(list->intensity[i], c->light[i].intensity);
+    status s = set_intensities(path, list, c);
+    if (s != OK) return s;
     if (list->note[0]) warnings_add(&c->noticed, "lights_list", "%s: %s", path, list->note);
     return options->near_lights ? set_positions(path, list, c) : set_directions(path, list, c);
 }
