@@ -135,8 +135,9 @@ typedef struct merlin_write_params {
 } merlin_write_params;
 
 /* Writes maps.exr, the PNGs, overview.png and report.json into a folder, which is created if necessary: all of them or,
- * after a failure, none. The model adds two new lights to the overview. Only for maps with a reconstruction. params
- * NULL: the defaults. */
+ * after a failure, none. The model adds two new lights to the overview, and to maps that were read from a folder
+ * a reconstruction. MERLIN_BAD_INPUT for values that merlin_maps_read would refuse, MERLIN_WRONG_USE for maps of a
+ * captured surface. params NULL: the defaults. */
 merlin_status merlin_maps_write(merlin_model *model, const merlin_maps *maps, const merlin_write_params *params,
                                 const char *folder);
 /* Composes the text of report.json: how a photograph was processed, its doubts, the maps' statistics (docs/json.md

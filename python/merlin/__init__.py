@@ -18,8 +18,8 @@ call; a process that is forked after the first call may not.
 from . import _call
 from .calibration import Calibration, calibrate
 from .capture import Capture, Light, RelitPhoto, Statistics, Surface, stereo
-from .errors import (BadInputError, CannotWriteError, DeviceError, MerlinError, MerlinWarning, MissingFileError,
-                     NoMemoryError, StoppedError, WrongUseError)
+from .errors import (BadInputError, CannotWriteError, DeviceError, ForkedError, MerlinError, MerlinWarning,
+                     MissingFileError, NoMemoryError, StoppedError, WrongTypeError, WrongUseError)
 from .exporting import Exported
 from .lights import Environment, Lamp, dome, dome_directions, orbit, read_lamps, temperature_color
 from .maps import Maps, Mended
@@ -49,10 +49,10 @@ def version() -> str:
 
 __all__ = [
     "BadInputError", "Calibration", "Camera", "CannotWriteError", "Capture", "Circle", "Crop", "DeviceError",
-    "Environment", "Exported", "FoundLight", "FoundObject", "Lamp", "Light", "Maps", "Mended", "MerlinError",
+    "Environment", "Exported", "ForkedError", "FoundLight", "FoundObject", "Lamp", "Light", "Maps", "Mended", "MerlinError",
     "MerlinWarning", "Mesh", "MissingFileError", "Model", "NoMemoryError", "Notice", "PhotoFile", "Photos",
     "Relighter", "RelitPhoto", "Shot", "SkippedFile", "Statistics", "StoppedError", "Surface", "Tensor", "Weights",
-    "WrongUseError", "calibrate", "dome", "dome_directions", "encode_image", "estimate", "find_mask", "find_masks",
+    "WrongTypeError", "WrongUseError", "calibrate", "dome", "dome_directions", "encode_image", "estimate", "find_mask", "find_masks",
     "find_object", "is_mask_name", "list_photos", "orbit", "read_image", "read_lamps", "read_mask", "read_shot",
     "resize_image", "set_threads", "stereo", "temperature_color", "to_pixels", "version", "write_animation",
     "write_image", "write_mask", "write_rti", "write_sheet",

@@ -14,7 +14,7 @@ from typing import Any, Callable, List, Optional
 import numpy as np
 
 from . import _headers, _library
-from .errors import BY_STATUS, BadInputError, MerlinError, MissingFileError
+from .errors import BY_STATUS, BadInputError, ForkedError, MerlinError, MissingFileError, WrongTypeError, WrongUseError
 
 library, library_path = _library.load()
 free = ctypes.CDLL(None).free  # of the C library, for what a caller gives back to it
@@ -36,7 +36,7 @@ os.register_at_fork(after_in_child=_after_fork)
 def call(name: str, *arguments: Any) -> Any:
     """Calls merlin_NAME and returns what it returns."""
     if _process["lost"]:
-        raise RuntimeError("merlin was used before this process was forked, and its threads are not in the child: "
+        raise ForkedError("merlin was used before this process was forked, and its threads are not in the child: "
                            "start processes by multiprocessing's \"spawn\", or fork before the first call")
     _process["called"] = True
     return getattr(library, "merlin_" + name)(*arguments)
@@ -66,7 +66,7 @@ class Watch:
     def __init__(self, progress: Optional[ProgressCallback], stop: Optional[StopCallback]) -> None:
         for name, value in (("progress", progress), ("stop", stop)):
             if value is not None and not callable(value):
-                raise TypeError(f"{name} is called, and a {type(value).__name__} cannot be")
+                raise WrongTypeError(f"{name} is called, and a {type(value).__name__} cannot be")
         self._told, self._asked = progress, stop
         self._raised: Optional[BaseException] = None
         self._handler: Any = None
@@ -192,10 +192,12 @@ def written_paths(files: Owner) -> List[str]:
 
 
 def path_bytes(path: Any) -> bytes:
-    """A path as the library takes it; ValueError for one with a null character in it."""
+    """A path as the library takes it; WrongUseError for one with a null character in it."""
+    if not is_path(path):
+        raise WrongTypeError(f"a path is text, bytes or of pathlib, not a {type(path).__name__}")
     encoded = os.fsencode(path)
     if b"\0" in encoded:
-        raise ValueError("a path holds no null character")
+        raise WrongUseError("a path holds no null character")
     return encoded
 
 
@@ -210,9 +212,9 @@ def is_path(value: Any) -> bool:
 
 
 def choice(value: Any, names: dict, what: str) -> int:
-    """The number of a name in a table; ValueError lists the names."""
+    """The number of a name in a table; WrongUseError lists the names."""
     if not isinstance(value, str) or value not in names:
-        raise ValueError(f"{what} is one of {', '.join(map(repr, names))}, not {value!r}")
+        raise WrongUseError(f"{what} is one of {', '.join(map(repr, names))}, not {value!r}")
     return names[value]
 
 
@@ -221,7 +223,7 @@ def real(value: Any, what: str) -> float:
     try:
         return float(value)
     except (TypeError, ValueError):
-        raise TypeError(f"{what} is a number, not {value!r}") from None
+        raise WrongTypeError(f"{what} is a number, not {value!r}") from None
 
 
 def whole(value: Any, what: str) -> int:
@@ -229,15 +231,29 @@ def whole(value: Any, what: str) -> int:
     try:
         number = value.__index__()
     except AttributeError:
-        raise TypeError(f"{what} is a whole number, not {value!r}") from None
+        raise WrongTypeError(f"{what} is a whole number, not {value!r}") from None
     if not -2**31 <= number < 2**31:
-        raise ValueError(f"{what} is out of range: {number}")
+        raise WrongUseError(f"{what} is out of range: {number}")
     return number
+
+
+def floats(value: Any, what: str) -> np.ndarray:
+    """An array of float32; WrongTypeError for what is none."""
+    try:
+        return np.asarray(value, dtype=np.float32)
+    except (TypeError, ValueError):
+        raise WrongTypeError(f"{what} is of numbers, not {value!r}") from None
+
+
+def by_channel(value: Any, what: str) -> Any:
+    """Three floats of one number or three."""
+    array = floats(value, what)
+    return vector3(np.repeat(array, 3) if array.size == 1 else array, what)
 
 
 def vector3(value: Any, what: str) -> Any:
     """Three floats for the library."""
-    array = np.asarray(value, dtype=np.float32)
+    array = floats(value, what)
     if array.shape != (3,):
-        raise ValueError(f"{what} is three numbers, not of shape {array.shape}")
+        raise WrongUseError(f"{what} is three numbers, not of shape {array.shape}")
     return _headers.floats3(*array.tolist())

@@ -12,7 +12,7 @@ import re
 from typing import Any, Dict, List, Optional, Tuple
 
 from . import _headers
-from .errors import MissingFileError
+from .errors import MissingFileError, WrongTypeError
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 CHECKOUT = os.path.dirname(os.path.dirname(HERE))
@@ -116,6 +116,8 @@ def shipped_weights(name: str) -> Optional[str]:
 
 def weights_path(name: Any, why: str = "") -> bytes:
     """The path of weights, by a shipped name or a path, as the command takes --model; why: what the error begins with."""
+    if not isinstance(name, (str, bytes, os.PathLike)):
+        raise WrongTypeError(f"weights are a name or a path, not a {type(name).__name__}")
     asked = os.fsdecode(name)
     if "/" in asked or "." in asked or (os.path.exists(asked) and not os.path.isdir(asked)):
         return os.fsencode(asked)

@@ -11,8 +11,8 @@ import numpy as np
 
 from . import _headers as h
 from . import mesh, pictures
-from ._call import Owner, ProgressCallback, StopCallback, Watch, check, choice, is_path, optional_path, path_bytes
-from ._call import real, taken_text, vector3, view, whole
+from ._call import Owner, ProgressCallback, StopCallback, Watch, by_channel, check, choice, floats, is_path
+from ._call import optional_path, path_bytes, real, taken_text, vector3, view, whole
 from .errors import WrongUseError
 from .mesh import Mesh
 from .pictures import PathLike, Picture
@@ -38,9 +38,8 @@ class Light(NamedTuple):
     lobe: float = 0.0  #: near: exponent of an LED's fall-off with the cosine of the angle to its direction
 
     def _struct(self) -> Any:
-        intensity = np.broadcast_to(np.asarray(self.intensity, dtype=np.float32), (3,))
         return h.Light(vector3(self.direction, "a light's direction"), vector3(self.position, "a light's position"),
-                       vector3(intensity, "a light's intensity"), real(self.lobe, "a light's lobe"))
+                       by_channel(self.intensity, "a light's intensity"), real(self.lobe, "a light's lobe"))
 
 
 def light_of(struct: Any) -> Light:
@@ -208,6 +207,9 @@ class Surface:
              stop: Optional[StopCallback] = None) -> None:
         """Writes maps.exr, the PNGs, overview.png and report.json into a folder, which is made if need be: all of them
         or, after a failure, none. name: of what it was made from, for the report. Maps.load reads it."""
+        for which in ("normal", "albedo", "depth", "mask"):
+            if not np.isfinite(getattr(self, which)).all():
+                raise WrongUseError(f"this surface's {which} has values that are not finite")
         params, watch = h.WriteParams(), Watch(progress, stop)
         watch.put(params)
         watch.check("surface_write", self._owner.at, _text(name), ctypes.byref(params), path_bytes(folder))
@@ -236,7 +238,7 @@ class Surface:
 
 
 def _rows(values: Any, count: int, what: str) -> np.ndarray:
-    array = np.asarray(values, dtype=np.float32)
+    array = floats(values, what)
     if array.shape != (count, 3):
         raise WrongUseError(f"{count} pictures want {what} of shape ({count}, 3), not {array.shape}")
     return array
@@ -245,16 +247,16 @@ def _rows(values: Any, count: int, what: str) -> np.ndarray:
 def _strengths(intensities: Any, count: int) -> np.ndarray:
     if intensities is None or isinstance(intensities, str):
         return np.zeros((count, 3), np.float32)
-    array = np.asarray(intensities, dtype=np.float32)
+    array = floats(intensities, "intensities")
     return _rows(array[:, None] * np.ones(3, np.float32) if array.shape == (count,) else array, count, "intensities")
 
 
 def _lights(lights: Any, positions: Any, intensities: Any, count: int) -> Tuple[str, List[Optional[Light]]]:
     """What is known of the lights, and each."""
     if lights is not None and positions is not None:
-        raise ValueError("lights are known by their directions (lights) or by their positions, not by both")
+        raise WrongUseError("lights are known by their directions (lights) or by their positions, not by both")
     if isinstance(intensities, str) and intensities != "unknown":
-        raise ValueError(f'intensities are numbers or "unknown", not {intensities!r}')
+        raise WrongUseError(f'intensities are numbers or "unknown", not {intensities!r}')
     strength = _strengths(intensities, count)
     if positions is not None:
         return "near", [Light(position=p, intensity=s) for p, s in zip(_rows(positions, count, "positions"), strength)]
@@ -284,7 +286,7 @@ def stereo(images: Union[Capture, PathLike, Sequence[Picture], np.ndarray], ligh
     many: Any = images
     if is_path(many):
         if positions is not None or intensities is not None:
-            raise ValueError("positions and intensities of a folder are in its files; Capture.read has near=True")
+            raise WrongUseError("positions and intensities of a folder are in its files; Capture.read has near=True")
         capture = Capture.read(many, lights=lights, mask=mask, linear=bool(linear), field_of_view=field_of_view,
                                distance=distance, progress=options.get("progress"), stop=options.get("stop"))
         return capture.stereo(method, **options)

@@ -11,6 +11,14 @@ class WrongUseError(MerlinError, ValueError):
     """The call makes no sense: shapes that do not fit, values out of range."""
 
 
+class WrongTypeError(WrongUseError, TypeError):
+    """An argument is of another kind: a word in the place of a number, bytes in that of floats."""
+
+
+class ForkedError(MerlinError, RuntimeError):
+    """The process was forked after the library's first call, whose threads it lacks."""
+
+
 class BadInputError(MerlinError, ValueError):
     """A file or its content is missing, damaged or of another kind."""
 

@@ -14,7 +14,9 @@ from .pictures import PathLike, new_image
 if TYPE_CHECKING:
     from .maps import Maps
 
-BITS = {name.lower(): 1 << bit for bit, name in enumerate(h.EXPORT_NAMES)}
+# The command's names.
+NAMES = {"OCCLUSION": "ao", "HEIGHT_FLOAT": "height32"}
+BITS = {NAMES.get(name, name.lower()): 1 << bit for bit, name in enumerate(h.EXPORT_NAMES)}
 BITS["all"] = h.EXPORT_ALL
 
 

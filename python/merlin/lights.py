@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, List, NamedTuple, Optional, Tuple
 import numpy as np
 
 from . import _headers as h
-from ._call import Owner, call, check, path_bytes, real, vector3, whole
+from ._call import Owner, by_channel, call, check, path_bytes, real, vector3, whole
+from .errors import WrongTypeError, WrongUseError
 from .pictures import PathLike
 from .results import notices, warn
 
@@ -27,8 +28,7 @@ class Lamp(NamedTuple):
     power: Any = (1.0, 1.0, 1.0)  #: by channel, linear: 1 is the flash's (5.95)
 
     def _struct(self) -> Any:
-        power = np.broadcast_to(np.asarray(self.power, dtype=np.float32), (3,))
-        return h.Lamp(vector3(self.at, "a lamp's place"), int(self.distant), vector3(power, "a lamp's power"))
+        return h.Lamp(vector3(self.at, "a lamp's place"), int(self.distant), by_channel(self.power, "a lamp's power"))
 
 
 def _lamp(struct: Any) -> Lamp:
@@ -37,7 +37,7 @@ def _lamp(struct: Any) -> Lamp:
 
 def _count(count: Any) -> int:
     if not 1 <= whole(count, "the number of lamps") <= _MOST:
-        raise ValueError(f"there are 1 to {_MOST} lamps, not {count}")
+        raise WrongUseError(f"there are 1 to {_MOST} lamps, not {count}")
     return count
 
 
@@ -85,7 +85,10 @@ def lamps_of(light: Any) -> Tuple[Any, int]:
     if isinstance(light, Lamp):
         several = [light]
     else:
-        several = list(light)
+        try:
+            several = list(light)
+        except TypeError:
+            raise WrongTypeError(f"light is a place (x, y, z), a Lamp or several of them, not {light!r}") from None
         if len(several) == 3 and not any(isinstance(one, Lamp) or np.ndim(one) for one in several):
             several = [Lamp(several)]
     structs = [(one if isinstance(one, Lamp) else Lamp(one))._struct() for one in several]
@@ -118,7 +121,7 @@ def environment_of(source: Any, turn: float = 0.0, exposure: float = 0.0) -> Opt
     """An Environment as it is, or a path's; None for None."""
     if source is None or isinstance(source, Environment):
         if source is not None and (turn or exposure):
-            raise ValueError("an Environment has its turn and exposure already")
+            raise WrongUseError("an Environment has its turn and exposure already")
         return source
     return Environment(source, turn, exposure)
 

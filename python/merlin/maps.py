@@ -13,6 +13,7 @@ from . import _headers as h
 from . import capture, exporting, mesh
 from ._call import Owner, ProgressCallback, StopCallback, Watch, call, check, optional_path, path_bytes
 from ._call import taken_text, vector3, view, whole
+from ._library import shipped_weights
 from .capture import Surface
 from .errors import WrongUseError
 from .mesh import Mesh
@@ -40,8 +41,11 @@ def _map(name: str, words: str) -> Any:
 
     def put(self: "Maps", value: Any) -> None:
         if name not in self._views:
-            raise ValueError(f"these maps have no {name}")
-        self._views[name][...] = value
+            raise WrongUseError(f"these maps have no {name}")
+        try:
+            self._views[name][...] = value
+        except (TypeError, ValueError) as error:
+            raise WrongUseError(f"these maps' {name} takes no such values: {error}") from None
 
     return property(get, put, doc=words)
 
@@ -198,7 +202,8 @@ class Maps:
         if model is not None:
             return model
         if self._model is None:
-            self._model = Model(self.model_name)
+            own = not self._struct.captured and shipped_weights(self.model_name) is not None
+            self._model = Model(self.model_name if own else None)
         return self._model
 
     def relight(self, light: Any = None, *, environment: "Union[Environment, PathLike, None]" = None,
@@ -212,7 +217,8 @@ class Maps:
         picture is turned about the vertical, at 90 what was ahead of the camera is to its right. exposure: EV, of a
         picture's path. by: "brdf" (with cast shadows and the network's global illumination), "direct" (without the
         latter), "unshadowed" (as in the paper) or "network" (the decoder of models that have one). model: another than
-        the maps'."""
+        the maps', which are relit by the weights of their name, or, if these are not known or the maps are of a
+        captured surface, by the default ones."""
         from .relighting import relight
         return relight(self._lighting_model(model), self, light, environment, turn, exposure, by)
 
@@ -257,8 +263,9 @@ class Maps:
     def save(self, folder: PathLike, *, model: "Optional[Model]" = None, last: bool = False,
              progress: Optional[ProgressCallback] = None, stop: Optional[StopCallback] = None) -> None:
         """Writes maps.exr, the PNGs, overview.png and report.json into a folder, which is made if need be: all of them
-        or, after a failure, none. WrongUseError for maps without a reconstruction, such as loaded ones. last,
-        progress and stop: as of Model.estimate."""
+        or, after a failure, none. Loaded maps get a reconstruction, too; a captured surface's are refused, whose
+        Surface.save writes them. BadInputError for values that load would refuse. last, progress and stop: as of
+        Model.estimate."""
         params = h.WriteParams(last=int(last))
         watch = Watch(progress, stop)
         watch.put(params)
@@ -269,8 +276,8 @@ class Maps:
                side: int = 0) -> exporting.Exported:
         """Writes the square around the object as other programs read it, and export.json, into a folder.
 
-        maps: any of "albedo", "normal", "roughness", "smoothness", "occlusion", "orm", "height", "height_float",
-        "alpha", "materialx" and "all"; None: albedo, normal, roughness, occlusion, height and alpha. normal_y: "up"
+        maps: any of "albedo", "normal", "roughness", "smoothness", "ao", "orm", "height", "height32", "alpha",
+        "materialx" and "all" (with "down" all but materialx); None: albedo, normal, roughness, ao, height and alpha. normal_y: "up"
         (OpenGL, Unity, Blender) or "down" (DirectX, Unreal). side: pixels a side, 64 to 8192; 0: the square's in the
         photograph, at most 2048."""
         return exporting.export(self, folder, maps, normal_y, side)
@@ -283,7 +290,7 @@ class Maps:
     @classmethod
     def load(cls, folder: PathLike, *, model: "Optional[Model]" = None) -> "Maps":
         """Reads maps.exr of a folder of maps, edited or not. model: to relight them by; None: the weights of the name
-        they tell, opened when they are first needed. Warns of what had to be corrected."""
+        they tell, or the default ones (as of relight), opened when they are first needed. Warns of what had to be corrected."""
         name = path_bytes(folder)
         owner = Owner(h.Maps(), "maps_free")
         check("maps_read", name, owner.at, path=os.fsdecode(name))

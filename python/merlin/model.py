@@ -12,6 +12,7 @@ import numpy as np
 from . import _headers as h
 from . import pictures
 from ._call import Owner, ProgressCallback, StopCallback, Watch, call, check, is_path, path_bytes, real, view, whole
+from .errors import WrongTypeError, WrongUseError
 from ._library import shipped_weights, weights_path
 from .maps import Maps
 from .pictures import PathLike, Picture
@@ -32,15 +33,20 @@ def _default_weights() -> Tuple[bytes, Optional[bytes]]:
 
 def _hint(points: Optional[Points], box: Optional[Box]) -> Any:
     hint = h.Hint()
-    for x, y in points or ():
+    try:
+        pairs = [(x, y) for x, y in points or ()]
+        numbers = None if box is None else tuple(box)
+    except (TypeError, ValueError):
+        raise WrongTypeError("points are pairs (x, y), and a box is x, y, width, height") from None
+    for x, y in pairs:
         if hint.point_count == h.MOST_POINTS:
-            raise ValueError(f"there are at most {h.MOST_POINTS} points")
+            raise WrongUseError(f"there are at most {h.MOST_POINTS} points")
         hint.point[hint.point_count] = h.Point(whole(x, "a point's x"), whole(y, "a point's y"))
         hint.point_count += 1
-    if box is not None:
-        hint.box = h.Box(*(whole(number, "a box's numbers") for number in box))
-        if len(box) != 4:
-            raise ValueError("a box is x, y, width, height")
+    if numbers is not None:
+        if len(numbers) != 4:
+            raise WrongUseError("a box is x, y, width, height")
+        hint.box = h.Box(*(whole(number, "a box's numbers") for number in numbers))
     return hint
 
 
@@ -138,7 +144,7 @@ class Model:
     @property
     def _handle(self) -> Owner:
         if self._owner is None:
-            raise ValueError("this model is closed")
+            raise WrongUseError("this model is closed")
         return self._owner
 
     @property

@@ -14,12 +14,14 @@ import numpy as np
 
 from . import _headers as h
 from ._call import Owner, check, choice, free, is_path, path_bytes, view, whole
-from .errors import WrongUseError
+from .errors import WrongTypeError, WrongUseError
+from .results import Notice, warn
 
 PathLike = Union[str, bytes, "os.PathLike[Any]"]
 Picture = Union[np.ndarray, PathLike, Any]
 
 _MOST_PIXELS = 64_000_000
+_LEAST_CODE = 128  # white is 1: hardly any photograph is this bright, but its bytes as floats are
 _TYPES = {np.dtype(np.uint8): h.PIXEL_8, np.dtype(np.uint16): h.PIXEL_16, np.dtype(np.float32): h.PIXEL_FLOAT}
 
 
@@ -50,7 +52,7 @@ def _known_type(array: np.ndarray, what: str) -> np.ndarray:
     native = array.dtype.newbyteorder("=")
     if native in _TYPES:
         return array.astype(native, copy=False)
-    raise TypeError(f"{what} is of uint8, uint16 or floats, not of {array.dtype}")
+    raise WrongTypeError(f"{what} is of uint8, uint16 or floats, not of {array.dtype}")
 
 
 def _laid_out(array: np.ndarray, linear: Optional[bool]) -> Tuple[np.ndarray, Any]:
@@ -70,9 +72,20 @@ def _laid_out(array: np.ndarray, linear: Optional[bool]) -> Tuple[np.ndarray, An
     return array, layout
 
 
+def _warn_of_codes(array: np.ndarray, linear: Optional[bool], what: str) -> None:
+    """Of floats that look like the codes of bytes; whoever calls them linear means it."""
+    most = float(array.max()) if array.dtype.kind == "f" and not linear else 0.0
+    if _LEAST_CODE <= most < np.inf:
+        warn([Notice("floats_like_bytes", f"{what} of floats reaches {most:g}, where white is 1: give 8-bit values as "
+                     "uint8, or divide them by 255 and say linear=False where they are sRGB; linear=True says that "
+                     "they are radiance")])
+
+
 def from_array(source: Any, linear: Optional[bool] = None, what: str = "a photograph") -> Tuple[Owner, Owner]:
     """Copies an array into an image of 3 linear channels and its alpha, which has no data where there is none."""
-    array, layout = _laid_out(_known_type(_array(source, what), what), linear)
+    known = _known_type(_array(source, what), what)
+    _warn_of_codes(known, linear, what)
+    array, layout = _laid_out(known, linear)
     color, alpha = new_image(), new_image()
     check("image_from_pixels", array.ctypes.data_as(ctypes.c_void_p), ctypes.byref(layout), color.at, alpha.at)
     return color, alpha
@@ -122,7 +135,7 @@ def image_for(array: Any, what: str = "a picture") -> Tuple[Any, np.ndarray]:
     """An image that shows an array of floats, without owning it; the array must live as long."""
     values = _array(array, what)
     if values.dtype.kind != "f" and values.dtype != np.bool_:
-        raise TypeError(f"{what} is of linear floats here, not of {values.dtype}: divide what is linear, and read what is "
+        raise WrongTypeError(f"{what} is of linear floats here, not of {values.dtype}: divide what is linear, and read what is "
                         "sRGB by merlin.read_image")
     floats = np.ascontiguousarray(values, dtype=np.float32)
     channels = floats.shape[2] if floats.ndim == 3 else 1
@@ -163,7 +176,7 @@ def to_pixels(image: np.ndarray, dtype: Any = np.uint8, *, linear: bool = False,
     numbers are clamped and rounded."""
     kind = np.dtype(dtype)
     if kind not in _TYPES:
-        raise TypeError(f"pixels are uint8, uint16 or float32, not {kind}")
+        raise WrongTypeError(f"pixels are uint8, uint16 or float32, not {kind}")
     struct, kept = image_for(image)
     cover = None if alpha is None else image_for(alpha, "an alpha")
     shape = kept.shape if cover is None else kept.shape[:2] + (4,)

@@ -10,8 +10,10 @@ import numpy as np
 
 from . import _headers as h
 from ._call import Owner, call, check, choice, real, view, whole
+from .errors import WrongUseError
 from .lights import Environment, environment_of, lamps_of
 from .pictures import PathLike, image_for, new_image
+from .results import notices, warn
 
 if TYPE_CHECKING:
     from .maps import Maps
@@ -20,22 +22,31 @@ if TYPE_CHECKING:
 WAYS = {"brdf": h.BY_BRDF, "network": h.BY_NETWORK, "unshadowed": h.BY_BRDF_UNSHADOWED, "direct": h.BY_BRDF_DIRECT}
 
 
+def warn_of_model(model: "Model", maps: "Maps", how: int) -> None:
+    """Where other weights than the maps' estimate their bounces, or relight them by a decoder."""
+    found = h.Warnings()
+    call("relighting_warnings", model._handle.struct, maps._owner.at, how, ctypes.byref(found))
+    warn(notices(found))
+
+
 def relight(model: "Model", maps: "Maps", light: Any, environment: Any, turn: float, exposure: float,
             by: str) -> np.ndarray:
     """As Maps.relight."""
     how = choice(by, WAYS, "by")
+    if light is not None:
+        warn_of_model(model, maps, how)
     if isinstance(light, str):
         if light != "found" or environment is not None:
-            raise ValueError('light is a place, lamps or "found", and the latter stands alone')
+            raise WrongUseError('light is a place, lamps or "found", and the latter stands alone')
         out = new_image()
         check("relight_found", model._handle.struct, maps._sound(), real(turn, "turn"), how, out.at)
         return view(out, out.struct)
     if environment is None and (turn or exposure):
-        raise ValueError('turn and exposure are of an environment, or turn of light="found"')
+        raise WrongUseError('turn and exposure are of an environment, or turn of light="found"')
     around = environment_of(environment, turn, exposure)
     lamps, count = lamps_of(light)
     if not count and around is None:
-        raise ValueError('there is no light: give light=(x, y, z), lamps, light="found" or an environment')
+        raise WrongUseError('there is no light: give light=(x, y, z), lamps, light="found" or an environment')
     if count == 0 or (count == 1 and not lamps[0].distant and list(lamps[0].power) == [1, 1, 1]):
         return _relight_one(model, maps, lamps[0].at if count else None, around, how)
     for i in range(count):
@@ -59,7 +70,9 @@ class Relighter:
 
     def __init__(self, maps: "Maps", side: int = 0, *, by: str = "brdf", model: "Optional[Model]" = None) -> None:
         how = choice(by, WAYS, "by")
-        handle = maps._lighting_model(model)._handle
+        lighting = maps._lighting_model(model)
+        warn_of_model(lighting, maps, how)
+        handle = lighting._handle
         self._owner: Optional[Owner] = Owner(ctypes.c_void_p(), "relighter_free", keeps=handle)
         self._lock = threading.Lock()
         check("relighter_new", handle.struct, maps._sound(), whole(side, "side"), how, self._owner.at)
@@ -67,7 +80,7 @@ class Relighter:
     @property
     def _handle(self) -> Any:
         if self._owner is None:
-            raise ValueError("this relighter is closed")
+            raise WrongUseError("this relighter is closed")
         return self._owner.struct
 
     def render(self, light: Any = None, environment: Union[Environment, PathLike, None] = None) -> np.ndarray:

@@ -9,7 +9,7 @@ from typing import Any, List, Sequence
 import numpy as np
 
 from . import _headers as h
-from ._call import Owner, check, choice, path_bytes, vector3, whole, written_paths
+from ._call import Owner, check, choice, floats, path_bytes, vector3, whole, written_paths
 from .errors import WrongUseError
 from .pictures import PathLike, image_for
 
@@ -25,7 +25,7 @@ def write_rti(path: PathLike, images: Sequence[np.ndarray], directions: Any, *, 
     brightness), "hsh" (hemispherical harmonics) or "rbf" (between the pictures; planes: a multiple of 3 up to 27, 0:
     18). quality: of the planes' JPEG files, 1 to 100; 0: 95. ptm and lrgb want 6 pictures, hsh 9, rbf 4."""
     images = list(images)
-    rows = np.asarray(directions, dtype=np.float32)
+    rows = floats(directions, "directions")
     if not images or rows.shape != (len(images), 3):
         raise WrongUseError(f"{len(images)} pictures want directions of shape ({len(images)}, 3), not {rows.shape}")
     params = h.RtiParams(choice(basis, BASES, "basis"), whole(planes, "planes"), whole(quality, "quality"))

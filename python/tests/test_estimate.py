@@ -216,12 +216,50 @@ def test_maps_are_saved_and_loaded(kept_maps, tmp_path):
     assert loaded.reconstruction is None and loaded.crop == kept_maps.crop and loaded.model_name == "merlin-any"
     relit = loaded.relight((0.7, 0.3, -0.4))
     np.testing.assert_allclose(relit, kept_maps.relight((0.7, 0.3, -0.4)), atol=0.02)
-    with pytest.raises(merlin.WrongUseError, match="no reconstruction"):
-        loaded.save(tmp_path / "again")
+    loaded.albedo *= 0.5
+    loaded.save(tmp_path / "again")  # with a reconstruction of its own
+    again = merlin.Maps.load(tmp_path / "again")
+    np.testing.assert_allclose(again.albedo, 0.5 * kept_maps.albedo, atol=2e-3)
+    assert (tmp_path / "again" / "reconstruction.png").exists()
     with pytest.raises(merlin.MissingFileError):
         merlin.Maps.load(tmp_path / "nowhere")
     with pytest.raises(merlin.CannotWriteError):
         kept_maps.save("/proc/merlin")
+
+
+def test_a_reconstruction_is_made_again(kept_maps, tmp_path):
+    """Of loaded maps, nearly as it was."""
+    kept_maps.save(tmp_path / "maps")
+    merlin.Maps.load(tmp_path / "maps").save(tmp_path / "again")
+    one, other = (merlin.read_image(tmp_path / name / "reconstruction.png")[0] for name in ("maps", "again"))
+    assert np.abs(one - other)[kept_maps.mask > 0.5].mean() < 0.05 < one[kept_maps.mask > 0.5].mean()
+
+
+def test_maps_that_could_not_be_loaded_are_not_saved(maps, tmp_path):
+    """With the words of load."""
+    for name, wrong, words in (("albedo", 255, "albedo.R goes"), ("depth", -1, "depth.Z goes"),
+                               ("normal", 0, "no length"), ("mask", 0, "selects nothing")):
+        kept = getattr(maps, name).copy()
+        setattr(maps, name, kept * wrong)
+        with pytest.raises(merlin.BadInputError, match="these maps: .*" + words):
+            maps.save(tmp_path / "maps")
+        setattr(maps, name, kept)
+    assert not (tmp_path / "maps").exists()
+    with pytest.raises(merlin.WrongUseError, match="takes no such values"):
+        maps.albedo = "white"
+
+
+def test_other_weights_than_the_maps_get_a_word(kept_maps):
+    """Where they work."""
+    point = merlin.Model("merlin-point")
+    with pytest.warns(merlin.MerlinWarning, match="bounces of their light of merlin-point .other_model"):
+        kept_maps.relight((0, 0, 0), model=point)
+    with pytest.warns(merlin.MerlinWarning, match="other_model"):
+        kept_maps.relighter(64, model=point)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        kept_maps.relight((0, 0, 0), by="direct", model=point)
+        kept_maps.relight((0, 0, 0))
 
 
 def test_maps_become_a_mesh(kept_maps, tmp_path):
@@ -252,6 +290,10 @@ def test_maps_are_exported(kept_maps, tmp_path):
     done = kept_maps.export(tmp_path / "usual")
     assert {"albedo.png", "normal.png", "export.json"} <= {path.rsplit("/", 1)[1] for path in done.files}
     assert done.side > 0 and done.relief > 0 and done.width > 0
+    done = kept_maps.export(tmp_path / "named", ["ao", "height32"], side=64)
+    assert {"ao.png", "height.exr"} <= {path.rsplit("/", 1)[1] for path in done.files}
+    done = kept_maps.export(tmp_path / "all", "all", normal_y="down", side=64)
+    assert not (tmp_path / "all" / "material.mtlx").exists()
     done = kept_maps.export(tmp_path / "unreal", ["orm", "normal"], normal_y="down", side=64)
     assert done.side == 64 and (tmp_path / "unreal" / "orm.png").exists()
     shade = kept_maps.occlusion(64)

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What is wrong is said in the library's words, by the exception that its kind asks for."""
+import warnings
+
 import numpy as np
 import pytest
 
@@ -35,17 +37,49 @@ OPTIONS = {
     "fov": ({"fov": 170}, "field of view"), "no fov": ({"fov": "wide"}, "is a number"),
     "exposure": ({"exposure": np.nan}, "within 20 EV"), "a box": ({"box": (1, 2)}, "a box is"),
     "a point outside": ({"points": [(500, 3)]}, "."), "progress": ({"progress": 3}, "cannot be"),
-    "stop": ({"stop": True}, "cannot be"),
+    "stop": ({"stop": True}, "cannot be"), "points": ({"points": 3}, "pairs"), "a box of one": ({"box": 3}, "a box is"),
 }
 
 
 @pytest.mark.parametrize("name", OPTIONS)
 def test_a_wrong_option_is_refused(name, quick):
-    """TypeError or ValueError."""
+    """By a MerlinError that is a TypeError or a ValueError, too."""
     options, words = OPTIONS[name]
     mask = None if "box" in options or "points" in options else DISC
-    with pytest.raises((TypeError, ValueError), match=words):
+    with pytest.raises(merlin.MerlinError, match=words) as error:
         quick(GREY, mask, **options)
+    assert isinstance(error.value, (TypeError, ValueError))
+
+
+def test_arguments_of_another_kind_are_merlin_errors(tmp_path):
+    """And usual ones."""
+    for call in (lambda: merlin.Model(3), lambda: merlin.read_image(None), lambda: merlin.Lamp("left")._struct(),
+                 lambda: merlin.Lamp((0, 0, 0), power="much")._struct(), lambda: merlin.set_threads(1.5),
+                 lambda: merlin.to_pixels(GREY), lambda: merlin.write_image(tmp_path / "a.png", GREY),
+                 lambda: merlin.find_object(GREY.astype(np.int64)), lambda: merlin.Environment(7),
+                 lambda: merlin.write_rti(tmp_path, [DISC * 1.0], "up"), lambda: merlin.calibrate(1)):
+        with pytest.raises(merlin.WrongTypeError) as error:
+            call()
+        assert isinstance(error.value, TypeError) and isinstance(error.value, ValueError)
+    for call in (lambda: merlin.dome(0), lambda: merlin.Lamp((0, 0))._struct(), lambda: merlin.encode_image(GREY / 255.0, "gif"),
+                 lambda: merlin.read_image("a\0b")):
+        with pytest.raises(merlin.WrongUseError):
+            call()
+
+
+def test_floats_that_are_bytes_get_a_word(quick, model):
+    """Unless they are said to be linear."""
+    shade = 40 + 180 * np.linspace(0, 1, 32)[None, :, None] * np.ones((32, 1, 3))
+    with pytest.warns(UserWarning, match="a photograph of floats reaches 220, where white is 1: .*uint8"):
+        model.estimate(shade, DISC, size=64, views=1)
+    capture = merlin.Capture()
+    with pytest.warns(merlin.MerlinWarning, match="floats_like_bytes"):
+        capture.add(shade, merlin.Light(direction=(0, 0, 1)))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        merlin.find_object(shade / 255, DISC)
+        merlin.find_object(shade.astype(np.uint8), DISC)
+        merlin.find_object(shade, DISC, linear=True)
 
 
 def test_files_that_are_none_are_refused(quick, tmp_path):
@@ -83,7 +117,9 @@ def test_every_exception_is_a_merlin_error_and_a_usual_one():
     """So that either can be caught."""
     for kind, usual in ((merlin.WrongUseError, ValueError), (merlin.BadInputError, ValueError),
                         (merlin.MissingFileError, FileNotFoundError), (merlin.CannotWriteError, OSError),
-                        (merlin.NoMemoryError, MemoryError), (merlin.DeviceError, RuntimeError)):
+                        (merlin.NoMemoryError, MemoryError), (merlin.DeviceError, RuntimeError),
+                        (merlin.WrongTypeError, TypeError), (merlin.WrongTypeError, ValueError),
+                        (merlin.ForkedError, RuntimeError)):
         assert issubclass(kind, merlin.MerlinError) and issubclass(kind, usual)
         assert str(kind("words")) == "words"
 

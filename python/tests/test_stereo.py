@@ -99,8 +99,15 @@ def test_a_surface_is_saved_and_becomes_maps(sphere, model, tmp_path):
     assert lit[:, :32].sum() > 1.5 * lit[:, 32:].sum()
     loaded = merlin.Maps.load(tmp_path / "ball", model=model)
     np.testing.assert_allclose(loaded.relight((-0.7, 0, -0.5), by="direct"), lit, atol=0.02)
+    for alone in (surface.maps(), merlin.Maps.load(tmp_path / "ball")):  # by the weights that the command takes
+        np.testing.assert_allclose(alone.relight((-0.7, 0, -0.5), by="direct"), lit, atol=0.02)
+    with pytest.raises(merlin.WrongUseError, match="captured surface, which is what is written"):
+        loaded.save(tmp_path / "never")
     with pytest.raises(merlin.StoppedError):
         surface.save(tmp_path / "never", stop=lambda: True)
+    surface.normal[30, 30] = np.nan
+    with pytest.raises(merlin.WrongUseError, match="normal has values that are not finite"):
+        surface.save(tmp_path / "never")
     assert not (tmp_path / "never").exists()
 
 

@@ -231,6 +231,34 @@ static void a_folder_of_ones_own_is_written_in_place(void **state)
     assert_null(text);
 }
 
+static void maps_that_were_read_are_written_again_unless_they_cannot_be_read(void **state)
+{
+    const fixture *f = *state;
+    merlin_maps maps, again;
+    char path[160];
+    snprintf(path, sizeof path, "%s/again", f->folder);
+    estimate(f, &maps);
+    assert_int_equal(merlin_maps_write(f->model, &maps, NULL, f->output), MERLIN_OK);
+    merlin_maps_free(&maps);
+    assert_int_equal(merlin_maps_read(f->output, &maps), MERLIN_OK);
+    assert_null(maps.reconstruction.data);
+    for (int i = 0; i < WIDTH * HEIGHT * 3; i++)
+        maps.albedo.data[i] *= 255;
+    assert_int_equal(merlin_maps_write(f->model, &maps, NULL, path), MERLIN_BAD_INPUT);
+    assert_non_null(strstr(merlin_error(), "these maps: albedo.R goes from"));
+    assert_false(file_exists(path));
+    for (int i = 0; i < WIDTH * HEIGHT * 3; i++)
+        maps.albedo.data[i] /= 2 * 255;
+    assert_int_equal(merlin_maps_write(f->model, &maps, NULL, path), MERLIN_OK);
+    assert_null(maps.reconstruction.data);
+    assert_int_equal(merlin_maps_read(path, &again), MERLIN_OK);
+    merlin_maps_free(&again);
+    maps.captured = 1;
+    assert_int_equal(merlin_maps_write(f->model, &maps, NULL, path), MERLIN_WRONG_USE);
+    assert_non_null(strstr(merlin_error(), "captured surface"));
+    merlin_maps_free(&maps);
+}
+
 static void a_photograph_in_any_unit_is_read_back(void **state)
 {
     fixture *f = *state;
@@ -402,6 +430,7 @@ int main(void)
         cmocka_unit_test(photographs_in_another_unit_are_exposed_for_it),
         cmocka_unit_test(written_maps_are_read_back),
         cmocka_unit_test(a_folder_of_ones_own_is_written_in_place),
+        cmocka_unit_test(maps_that_were_read_are_written_again_unless_they_cannot_be_read),
         cmocka_unit_test(a_photograph_in_any_unit_is_read_back),
         cmocka_unit_test(maps_of_the_farthest_exposures_are_read_back),
         cmocka_unit_test(a_folder_has_every_file_and_no_other),

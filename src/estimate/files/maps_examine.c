@@ -63,7 +63,7 @@ typedef struct examination {
     const char *path;
     const exr_target *layers;
     size_t count;
-    bool captured;
+    bool captured, mends; /* mends: normals become unit */
     const merlin_maps *maps;
     size_t object; /* number of the object's pixels */
     tally tallies[MOST_LAYERS];
@@ -186,7 +186,7 @@ static normals examine_normals(const examination *e)
                 found.coded += !unit && is_color(n);
                 found.away += n.z < -0.05f;
             }
-            if (cover > 0) straighten(values);
+            if (e->mends && cover > 0) straighten(values);
         }
     }
     return found;
@@ -242,19 +242,32 @@ static bool has_photo(const exr_target *layers, size_t count)
     return false;
 }
 
+static status examine(examination *e, normals *n)
+{
+    e->captured = !has_photo(e->layers, e->count);
+    status s = examine_mask(e);
+    if (s == OK) s = parallel_try(e->count, examine_layer, e);
+    for (size_t i = 0; i < e->count && s == OK; i++)
+        s = check_layer(e, i);
+    if (s != OK) return s;
+    *n = examine_normals(e);
+    return check_normals(e, n);
+}
+
 status maps_examine(const char *path, const exr_target *layers, size_t count, merlin_maps *maps)
 {
-    examination e = {.path = path, .layers = layers, .count = count, .maps = maps};
-    e.captured = !has_photo(layers, count);
-    status s = examine_mask(&e);
-    if (s == OK) s = parallel_try(count, examine_layer, &e);
-    for (size_t i = 0; i < count && s == OK; i++)
-        s = check_layer(&e, i);
-    if (s != OK) return s;
-    const normals n = examine_normals(&e);
-    s = check_normals(&e, &n);
+    examination e = {.path = path, .layers = layers, .count = count, .maps = maps, .mends = true};
+    normals n;
+    status s = examine(&e, &n);
     if (s == OK) record_doubts(&e, &n, maps);
     return s;
+}
+
+status maps_look_through(const char *where, const exr_target *layers, size_t count, const merlin_maps *maps)
+{
+    examination e = {.path = where, .layers = layers, .count = count, .maps = maps};
+    normals n;
+    return examine(&e, &n);
 }
 
 /* ---- the crop ---- */

@@ -20,6 +20,9 @@
  * were not unit or will be clamped are recorded in maps->mended and doubted. */
 status maps_examine(const char *path, const exr_target *layers, size_t count, merlin_maps *maps);
 
+/* Does the same with maps that are to be written, and changes nothing. */
+status maps_look_through(const char *where, const exr_target *layers, size_t count, const merlin_maps *maps);
+
 /* Fails with MERLIN_BAD_INPUT if the object is not where the crop has it. sized: the file is known to have the size
  * with which it was written; then the mask may have become smaller within the crop. */
 status maps_check_crop(const char *path, bool sized, const merlin_maps *maps);

@@ -287,6 +287,15 @@ status maps_read_layers(exr_file *f, const char *path, bool photographed, merlin
     return maps_examine(path, targets, list_channels(photographed, images, targets), maps);
 }
 
+status maps_check_values(const char *where, const merlin_maps *maps)
+{
+    merlin_maps m = *maps;
+    merlin_image *const images[IMAGES] = {&m.albedo, &m.normal, &m.roughness, &m.depth, &m.mask, &m.photo};
+    exr_target targets[CHANNELS];
+    status s = maps_look_through(where, targets, list_channels(true, images, targets), maps);
+    return s == OK ? maps_check_crop(where, true, maps) : s;
+}
+
 void maps_tidy(merlin_maps *maps)
 {
     surface all = {maps->albedo, maps->normal, maps->roughness, maps->depth, maps->mask, .matte = false};

@@ -13,6 +13,9 @@ exr_attribute maps_picture_size(int width, int height);
  * MERLIN_BAD_INPUT for unusable maps (maps_examine.h); path is for messages. Call merlin_maps_free after a failure,
  * too. */
 status maps_read_layers(exr_file *f, const char *path, bool photographed, merlin_maps *maps);
+/* Refuses maps of a photograph that maps_read_layers would refuse when they were read again, as they may have been
+ * changed in memory. where: for messages. */
+status maps_check_values(const char *where, const merlin_maps *maps);
 /* Reads a photograph's maps, or those of a captured surface, which become like a photograph's: the square around it is
  * the frame of a camera 60 degrees wide. Call merlin_maps_free after a failure, too. */
 status maps_read_photographed(exr_file *f, const char *path, merlin_maps *maps);

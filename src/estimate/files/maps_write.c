@@ -12,6 +12,8 @@
 #include "estimate/files/maps_files.h"
 #include "estimate/files/overview.h"
 #include "estimate/photo/model_pair.h"
+#include "estimate/relight/maps_surface.h"
+#include "estimate/relight/reconstruct.h"
 #include "image/write/write.h"
 
 /* ---- one file each ---- */
@@ -130,10 +132,28 @@ static status write_maps(merlin_model *model, const merlin_maps *maps, const mer
     return s;
 }
 
+/* Writes maps that were read from a folder, with a reconstruction. */
+static status write_read_maps(merlin_model *model, const merlin_maps *maps, const merlin_write_params *by,
+                              const char *folder)
+{
+    merlin_maps whole = *maps;
+    status s = maps_reconstruct(model, maps, &whole.reconstruction);
+    if (s == OK) s = write_maps(model, &whole, by, folder);
+    merlin_image_free(&whole.reconstruction);
+    return s;
+}
+
 merlin_status merlin_maps_write(merlin_model *model, const merlin_maps *maps, const merlin_write_params *params,
                                 const char *folder)
 {
     const merlin_write_params usual = {.in_place = 0};
     status s = api_needs(__func__, model && maps && folder);
-    return s == OK ? write_maps(model, maps, params ? params : &usual, folder) : s;
+    if (s == OK) s = maps_check(maps);
+    if (s == OK && maps->captured)
+        s = fail(MERLIN_WRONG_USE, "these maps are of a captured surface, which is what is written");
+    if (s == OK) s = maps_check_values("these maps", maps);
+    if (s != OK) return s;
+    if (!params) params = &usual;
+    return maps->reconstruction.data ? write_maps(model, maps, params, folder)
+                                     : write_read_maps(model, maps, params, folder);
 }

@@ -9,6 +9,7 @@
 #include "estimate/light/found_light.h"
 #include "estimate/photo/model_pair.h"
 #include "estimate/relight/maps_surface.h"
+#include "estimate/relight/reconstruct.h"
 #include "estimate/relight/relighter.h"
 
 /* Copies the light, if there is one. */
@@ -83,20 +84,38 @@ merlin_status merlin_relight_environment(merlin_model *model, const merlin_maps 
     return s == OK ? relight_by(model, maps, light, &env->map, how, out) : s;
 }
 
-merlin_status merlin_relight_found(merlin_model *model, const merlin_maps *maps, float turn, merlin_relighting how,
-                                   merlin_image *out)
+/* Relights by a light that was estimated, turned. */
+static status relight_by_found(merlin_model *model, const merlin_maps *maps, const merlin_found_light *light,
+                               float turn, merlin_relighting how, merlin_image *out)
 {
-    if (out) *out = (merlin_image){0};
     found_lights lights = {.count = 0};
-    status s = api_needs(__func__, model && maps && out);
-    if (s == OK && how == MERLIN_BY_NETWORK)
-        s = fail(MERLIN_WRONG_USE, "the relighting decoder knows one lamp alone; relight by BRDF");
-    if (s == OK && !isfinite(turn)) s = fail(MERLIN_WRONG_USE, "the light's turn must be finite");
-    if (s == OK) s = found_light_stand(&maps->light, turn, &lights);
+    status s = found_light_stand(light, turn, &lights);
     const lighting by = {lights.lamps, lights.count, found_lights_rest(&lights)};
     if (s == OK) s = relight_maps(model, maps, &by, how, out);
     env_map_free(&lights.rest);
     return s;
+}
+
+merlin_status merlin_relight_found(merlin_model *model, const merlin_maps *maps, float turn, merlin_relighting how,
+                                   merlin_image *out)
+{
+    if (out) *out = (merlin_image){0};
+    status s = api_needs(__func__, model && maps && out);
+    if (s == OK && how == MERLIN_BY_NETWORK)
+        s = fail(MERLIN_WRONG_USE, "the relighting decoder knows one lamp alone; relight by BRDF");
+    if (s == OK && !isfinite(turn)) s = fail(MERLIN_WRONG_USE, "the light's turn must be finite");
+    return s == OK ? relight_by_found(model, maps, &maps->light, turn, how, out) : s;
+}
+
+status maps_reconstruct(merlin_model *model, const merlin_maps *maps, merlin_image *out)
+{
+    merlin_found_light light = maps->light;
+    *out = (merlin_image){0};
+    if (!light.known) {
+        light = (merlin_found_light){.known = 1, .flash = 1};
+        if (maps->has_environment) memcpy(light.rest, maps->environment, sizeof light.rest);
+    }
+    return relight_by_found(model, maps, &light, 0, MERLIN_BY_BRDF, out);
 }
 
 /* ---- the network ---- */
