@@ -4,6 +4,8 @@
 #include <stdio.h>
 
 enum { NAME = 96 };
+/* Of attention among pictures. */
+enum { HEADS = 4, HEAD_WIDTH = 32 };
 
 /* Writes "a.b" to the caller's buffer; the graph copies names. */
 static const char *join(char *buffer, const char *a, const char *b)
@@ -62,8 +64,40 @@ void block_encoder(nn_graph *g, nn_node *x, const char *name, const block_encode
         y = i ? block_conv(g, y, join(buffer, level, "a"), shape->widths[i], 2) : first_layer(g, y, level, name, shape);
         if (i) y = block_conv(g, y, join(buffer, level, "b"), shape->widths[i], 1);
         if (i == MODEL_LEVELS - 1) y = block_conv(g, y, join(buffer, level, "c"), shape->widths[i], 1);
-        features[i] = y = residual_blocks(g, y, level, shape->blocks ? &shape->blocks[i] : NULL, shape->widths[i]);
+        y = residual_blocks(g, y, level, shape->blocks ? &shape->blocks[i] : NULL, shape->widths[i]);
+        /* at the two coarsest levels attention costs little, and sees most of the object */
+        if (shape->several) y = block_exchange(g, y, level, shape->widths[i], i >= MODEL_LEVELS - 2);
+        features[i] = y;
     }
+}
+
+/* Adds multi-head attention among the pictures of normalized features (Vaswani et al. 2017, with the norm before it).
+ */
+static nn_node *attend(nn_graph *g, nn_node *x, const char *name, int width)
+{
+    char buffer[NAME], own[NAME];
+    join(own, name, "attention");
+    nn_node *y = nn_layer_norm(g, x, join(buffer, own, "norm"));
+    y = nn_conv2d(g, y, join(buffer, own, "in"), 3 * HEADS * HEAD_WIDTH, 1, 1, NN_BIAS);
+    y = nn_group_attention(g, y, NULL, HEADS);
+    return nn_add(g, x, nn_conv2d_zero(g, y, join(buffer, own, "out"), width, 1, 1, NN_BIAS));
+}
+
+nn_node *block_exchange(nn_graph *g, nn_node *x, const char *name, int width, bool attention)
+{
+    char buffer[NAME];
+    nn_node *parts[3] = {x, nn_group_repeat(g, nn_group_max(g, x, NULL)),
+                         nn_group_repeat(g, nn_group_mean(g, x, NULL))};
+    nn_node *y = nn_conv2d_zero(g, nn_concat(g, parts, 3), join(buffer, name, "exchange"), width, 1, 1, NN_BIAS);
+    y = nn_add(g, x, y);
+    return attention ? attend(g, y, name, width) : y;
+}
+
+nn_node *block_fuse(nn_graph *g, nn_node *x, const char *name, int width)
+{
+    nn_node *mean = nn_group_mean(g, x, NULL);
+    nn_node *parts[3] = {nn_group_max(g, x, NULL), mean, nn_group_spread(g, x, NULL)};
+    return nn_add(g, mean, nn_conv2d_zero(g, nn_concat(g, parts, 3), name, width, 1, 1, NN_BIAS));
 }
 
 /* Adds an attention gate (Oktay et al. 2018): sigma(psi(ReLU(W_x skip + W_g signal + b)) + b_psi), computed at the

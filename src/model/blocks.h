@@ -17,11 +17,20 @@ nn_node *block_residual(nn_graph *g, nn_node *x, const char *name, int width);
 typedef struct block_encoder_shape {
     const int *widths, *blocks; /* MODEL_LEVELS of each; blocks NULL: none */
     nn_node *beside;            /* full-size side input of the first layer (`name.beside.*`); NULL: none */
+    bool several;               /* pictures of an object exchange what they see at every level (block_exchange) */
 } block_encoder_shape;
 
 /* Adds an encoder from the packed full-size input (float, any channels) to features at every level. */
 void block_encoder(nn_graph *g, nn_node *x, const char *name, const block_encoder_shape *shape,
                    nn_node *features[MODEL_LEVELS]);
+
+/* Adds to each picture's features what the object's pictures have in common: its own, their maximum and their mean
+ * through a 1×1 convolution (`name.exchange.*`), and, if `attention`, attention among the pictures at each pixel
+ * (`name.attention.*`). Both add nothing until they are trained. */
+nn_node *block_exchange(nn_graph *g, nn_node *x, const char *name, int width, bool attention);
+/* Adds an object's features from those of its pictures: their mean and, once trained, of maximum, mean and spread
+ * (`name.*`). For one picture it is that picture's. */
+nn_node *block_fuse(nn_graph *g, nn_node *x, const char *name, int width);
 
 typedef struct block_decoder_inputs {
     const char *name;

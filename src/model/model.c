@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include "model/model.h"
 
-#include <stdlib.h>
-#include <string.h>
+#include <stdio.h>
 
 #include "model/blocks.h"
 #include "model/sh_bands.h"
-#include "nn/safetensors.h"
 #include "optics/light.h"
 
 enum { LIGHT_CODE = 128, ENVIRONMENT_FEATURES = 128 };
@@ -42,8 +40,9 @@ typedef struct network {
     nn_graph *g;
     const model_config *config;
     nn_node *mask, *light_position;
-    nn_node *sight, *lens; /* NULL unless "lighting" is "any" */
-    nn_node *encoder[MODEL_LEVELS];
+    nn_node *sight, *lens;               /* NULL unless "lighting" is "any" */
+    nn_node *seen[MODEL_LEVELS];         /* encoder's features of each picture */
+    nn_node *encoder[MODEL_LEVELS];      /* those of the object: of several pictures together, else the same */
     nn_node *material[MODEL_LEVELS - 1]; /* features of the material decoder, or the sum of those of four decoders */
     maps maps;
     nn_node *light;                          /* the target's lighting code */
@@ -141,7 +140,7 @@ static nn_node *estimate_light(network *n, const char *first, const char *second
     nn_graph *g = n->g;
     nn_node *parts[2];
     for (int i = 0; i < 2; i++)
-        parts[i] = nn_spatial_mean(g, n->encoder[MODEL_LEVELS - 2 + i]);
+        parts[i] = nn_spatial_mean(g, n->seen[MODEL_LEVELS - 2 + i]);
     nn_node *y = nn_relu(g, nn_linear(g, nn_concat(g, parts, 2), first, ENVIRONMENT_FEATURES));
     return nn_float(g, nn_scale_shift(g, nn_linear(g, y, second, values), 0.1f, 0.0f));
 }
@@ -184,6 +183,18 @@ static nn_node *render_environment(network *n, nn_node *code)
     return nn_environment(n->g, n->maps.albedo, n->maps.normal, n->mask, decode_sh(n->g, code));
 }
 
+/* Adds what shows where each picture's strongest lamp is blocked: by the object's features and, of several pictures,
+ * its own. */
+static nn_node *estimate_visibility(network *n)
+{
+    nn_graph *g = n->g;
+    nn_node *x = n->material[0];
+    if (n->config->several)
+        x = nn_add(g, nn_group_repeat(g, x),
+                   nn_conv2d_zero(g, n->seen[0], "visibility.own", n->config->widths[0], 1, 1, NN_BIAS));
+    return nn_sigmoid(g, block_head(g, x, "visibility.head", 1));
+}
+
 static void add_light(network *n)
 {
     n->light = nn_input(n->g, "light", model_light_size(n->config), NN_VECTOR);
@@ -202,7 +213,7 @@ static void build_lights(network *n, model_part part)
     }
     if (any) {
         n->lights = estimate_light(n, "lights.fc1", "lights.fc2", MODEL_LIGHTS);
-        n->visibility = nn_sigmoid(g, block_head(g, n->material[0], "visibility.head", 1));
+        n->visibility = estimate_visibility(n);
     }
     first_bounce first = {n->direct, n->environment};
     if (n->config->global_illumination) n->indirect = global_illumination(g, n->config, &first, &n->maps, n->mask);
@@ -214,19 +225,37 @@ static void build_lights(network *n, model_part part)
     if (both) n->relit_brdf = nn_add(g, n->relit_brdf, render_environment(n, nn_slice(g, n->light, 3, MODEL_SH)));
 }
 
-static void build_network(network *n, model_part part)
+/* Adds an input that is the same for all pictures of an object. */
+static nn_node *object_input(const network *n, const char *name, int channels, int reduction)
+{
+    return n->config->several ? nn_group_input(n->g, name, channels, reduction)
+                              : nn_input(n->g, name, channels, reduction);
+}
+
+/* Adds the encoder, which sees every picture. */
+static void encode(network *n)
 {
     nn_graph *g = n->g;
-    nn_node *image = nn_input(g, "image", 3, 1);
-    n->mask = nn_input(g, "mask", 1, 1);
-    n->light_position = nn_input(g, "light_position", 3, NN_VECTOR);
-    if (n->config->lighting == MODEL_LIGHT_ANY) {
-        n->sight = nn_input(g, "sight", MODEL_SIGHT, 1);
-        n->lens = nn_input(g, "lens", 3, NN_VECTOR);
+    const model_config *c = n->config;
+    nn_node *parts[2] = {nn_input(g, "image", 3, 1), c->several ? nn_group_repeat(g, n->mask) : n->mask};
+    const block_encoder_shape shape = {c->widths, c->encoder_blocks, n->sight, c->several};
+    block_encoder(g, nn_concat(g, parts, 2), "encoder", &shape, n->seen);
+    for (int i = 0; i < MODEL_LEVELS; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "encoder.level%d.fuse", i);
+        n->encoder[i] = c->several ? block_fuse(g, n->seen[i], name, c->widths[i]) : n->seen[i];
     }
-    nn_node *parts[2] = {image, n->mask};
-    block_encoder_shape shape = {n->config->widths, n->config->encoder_blocks, n->sight};
-    block_encoder(g, nn_concat(g, parts, 2), "encoder", &shape, n->encoder);
+}
+
+static void build_network(network *n, model_part part)
+{
+    n->mask = object_input(n, "mask", 1, 1);
+    n->light_position = object_input(n, "light_position", 3, NN_VECTOR);
+    if (n->config->lighting == MODEL_LIGHT_ANY) {
+        n->sight = nn_input(n->g, "sight", MODEL_SIGHT, 1);
+        n->lens = object_input(n, "lens", 3, NN_VECTOR);
+    }
+    encode(n);
     if (n->config->material_decoders == 1)
         material_by_one_decoder(n);
     else
@@ -286,7 +315,8 @@ static void add_relighting_losses(network *n, model_part part, nn_node *mask)
 {
     nn_graph *g = n->g;
     bool both = n->relit_direct && n->relit_brdf;
-    nn_node *relit = n->relit_direct ? n->relit_direct : n->relit_brdf, *relit_true = nn_input(g, "relit_true", 3, 1);
+    nn_node *relit = n->relit_direct ? n->relit_direct : n->relit_brdf,
+            *relit_true = object_input(n, "relit_true", 3, 1);
     nn_masked_l2(g, relit, relit_true, mask, "relight", 1.0f);
     if (both) nn_masked_l2(g, n->relit_brdf, relit_true, mask, "relight_brdf", 1.0f);
     if (part != MODEL_TRAINING_SSIM) return;
@@ -299,8 +329,8 @@ static void add_relighting_losses(network *n, model_part part, nn_node *mask)
 static void add_light_losses(network *n)
 {
     nn_graph *g = n->g;
-    nn_node *one = nn_scale_shift(g, nn_slice(g, n->light_position, 0, 1), 0.0f, 1.0f);
     nn_node *truth = nn_input(g, "lights_true", MODEL_LIGHTS, NN_VECTOR);
+    nn_node *one = nn_scale_shift(g, nn_slice(g, truth, 0, 1), 0.0f, 1.0f);
     nn_node *lamp_weight = nn_input(g, "lamp_weight", 1, NN_VECTOR),
             *rest_weight = nn_input(g, "rest_weight", 1, NN_VECTOR);
     const struct {
@@ -323,19 +353,19 @@ static void add_light_losses(network *n)
 static void add_losses(network *n, model_part part)
 {
     nn_graph *g = n->g;
-    nn_node *mask = nn_input(g, "loss_mask", 1, 1);
-    nn_node *roughness = nn_input(g, "roughness_true", 1, 1);
-    nn_node *direct = nn_input(g, "direct_true", 3, 1);
-    nn_masked_l2(g, n->maps.albedo, nn_input(g, "albedo_true", 3, 1), mask, "albedo", 1.0f);
-    nn_masked_l2(g, n->maps.normal, nn_input(g, "normal_true", 3, 1), mask, "normal", 2.0f);
-    nn_masked_l2(g, n->maps.depth, nn_input(g, "depth_true", 1, 1), mask, "depth", 1.0f);
+    nn_node *mask = object_input(n, "loss_mask", 1, 1);
+    nn_node *roughness = object_input(n, "roughness_true", 1, 1);
+    nn_node *direct = object_input(n, "direct_true", 3, 1);
+    nn_masked_l2(g, n->maps.albedo, object_input(n, "albedo_true", 3, 1), mask, "albedo", 1.0f);
+    nn_masked_l2(g, n->maps.normal, object_input(n, "normal_true", 3, 1), mask, "normal", 2.0f);
+    nn_masked_l2(g, n->maps.depth, object_input(n, "depth_true", 1, 1), mask, "depth", 1.0f);
     nn_masked_l2(g, n->maps.roughness, roughness, mask, "roughness", 1.0f);
     nn_masked_gradient_l2(g, n->maps.roughness, roughness, mask, "roughness_gradient", 1.0f);
     nn_masked_l2(g, n->direct, direct, mask, "direct", 1.0f);
     if (n->indirect) {
-        nn_masked_l2(g, n->indirect, nn_input(g, "indirect_true", 3, 1), mask, "indirect", 1.0f);
+        nn_masked_l2(g, n->indirect, object_input(n, "indirect_true", 3, 1), mask, "indirect", 1.0f);
         nn_node *image = nn_add(g, n->direct, n->indirect);
-        nn_masked_l2(g, image, nn_input(g, "reconstruction_true", 3, 1), mask, "reconstruction", 1.0f);
+        nn_masked_l2(g, image, object_input(n, "reconstruction_true", 3, 1), mask, "reconstruction", 1.0f);
     }
     if (n->environment) {
         nn_node *one = nn_scale_shift(g, nn_slice(g, n->light_position, 0, 1), 0.0f, 1.0f);
@@ -398,46 +428,4 @@ status model_build(const model_config *config, model_part part, nn_graph **out)
     }
     *out = g;
     return OK;
-}
-
-static status read_config(const safetensors_file *file, const char *weights, model_config *config)
-{
-    if (safetensors_metadata(file, "checkpoint"))
-        return fail(MERLIN_BAD_INPUT,
-                    "%s is a checkpoint of training, no model: that is weights.safetensors, once training wrote it",
-                    weights);
-    const char *json = safetensors_metadata(file, "config");
-    if (json) return model_config_parse(json, strlen(json), weights, config);
-    return fail(MERLIN_BAD_INPUT, "%s has no model configuration: these are not weights of merlin", weights);
-}
-
-static status load(const safetensors_file *file, const char *weights, model_config *config, nn_params **params)
-{
-    nn_graph *g = NULL;
-    status s = read_config(file, weights, config);
-    if (s == OK) s = model_build(config, MODEL_WHOLE, &g);
-    if (s == OK) s = nn_params_open(g, file, weights, params);
-    nn_graph_free(g);
-    return s;
-}
-
-status model_load_config(const char *weights, model_config *config)
-{
-    safetensors_file *file;
-    status s = safetensors_open(weights, &file);
-    if (s != OK) return s;
-    s = read_config(file, weights, config);
-    safetensors_close(file);
-    return s;
-}
-
-status model_load(const char *weights, model_config *config, nn_params **params)
-{
-    *params = NULL;
-    safetensors_file *file;
-    status s = safetensors_open(weights, &file);
-    if (s != OK) return s;
-    s = load(file, weights, config, params);
-    safetensors_close(file);
-    return s;
 }

@@ -33,7 +33,12 @@
  * (vector MODEL_LIGHTS), and "visibility" 1 in [0, 1], the share of the strongest lamp's light that is not blocked by
  * the object itself. Training adds inputs "lights_true", "lamp_weight" and "rest_weight" (vectors of 1),
  * "visibility_true" 1 and "visibility_weight" 1, and the losses "flash", "lamp", "lamp_distance", "lamp_light",
- * "environment" and "visibility". */
+ * "environment" and "visibility".
+ *
+ * With "several" the batch consists of objects with several such photographs each (nn.h, "several pictures of an
+ * object"), taken from one place. Inputs and outputs that belong to a photograph are "image", "sight", "lights",
+ * "visibility", and the truth and weights of the latter two; all others are one for each object. With one photograph
+ * the network is that of "lighting": "any" until it is trained. */
 #ifndef MERLIN_MODEL_MODEL_H
 #define MERLIN_MODEL_MODEL_H
 

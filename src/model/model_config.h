@@ -23,13 +23,15 @@ typedef struct model_config {
     bool global_illumination;
     /* the paper's settings A (point) and B (point and environment), or any light and lens */
     model_lighting lighting;
+    bool several; /* takes several pictures of the object at once, each in its own light ("lighting": "any" only) */
     int widths[MODEL_LEVELS]; /* channels at 1/2, 1/4, 1/8, 1/16, 1/32 of the size */
     int gi_widths[MODEL_LEVELS];
     int encoder_blocks[MODEL_LEVELS];      /* residual blocks after each level's convolutions */
     int material_blocks[MODEL_LEVELS - 1]; /* residual blocks after each level of the material decoders */
 } model_config;
 
-/* Parses JSON. Every key is required except the two of blocks (0 if left out), unknown keys are refused, values are
+/* Parses JSON. Every key is required except the two of blocks (0 if left out) and "several"
+ * (false), unknown keys are refused, values are
  * range-checked; messages name the key. */
 status model_config_parse(const char *json, size_t size, const char *where, model_config *out);
 /* Reads a file like configs/models/NAME.json, or the "model" of one like configs/runs/NAME/01-96.json, with the files

@@ -16,7 +16,7 @@ enum { POINT_BUFFERS = 12, BOTH_BUFFERS = 15, BUFFERS = 24 };
 typedef struct item {
     train_view view;
     size_t sample;
-    uint64_t presentation;
+    uint64_t presentation, first; /* first: the presentation of the object's first picture */
 } item;
 
 struct train_loader {
@@ -32,37 +32,37 @@ struct train_loader {
 typedef struct field {
     const char *input; /* NULL: none */
     int channels;
-    bool vector;
-    size_t offset; /* offset of the pointer in train_view */
+    bool vector, of_object; /* of_object: the same for all pictures of an object */
+    size_t offset;          /* offset of the pointer in train_view */
 } field;
 
 static const field fields[BUFFERS] = {
-    {"albedo_true", 3, false, offsetof(train_view, albedo)},
-    {"normal_true", 3, false, offsetof(train_view, normal)},
-    {"roughness_true", 1, false, offsetof(train_view, roughness)},
-    {"depth_true", 1, false, offsetof(train_view, depth)},
-    {"mask", 1, false, offsetof(train_view, mask)},
-    {"direct_true", 3, false, offsetof(train_view, direct)},
-    {"indirect_true", 3, false, offsetof(train_view, indirect)},
-    {"image", 3, false, offsetof(train_view, image)},
-    {"reconstruction_true", 3, false, offsetof(train_view, reconstruction)},
-    {"relit_true", 3, false, offsetof(train_view, relit)},
-    {"loss_mask", 1, false, offsetof(train_view, loss_mask)},
-    {"light_position", 3, true, offsetof(train_view, light)},
+    {"albedo_true", 3, false, true, offsetof(train_view, albedo)},
+    {"normal_true", 3, false, true, offsetof(train_view, normal)},
+    {"roughness_true", 1, false, true, offsetof(train_view, roughness)},
+    {"depth_true", 1, false, true, offsetof(train_view, depth)},
+    {"mask", 1, false, true, offsetof(train_view, mask)},
+    {"direct_true", 3, false, true, offsetof(train_view, direct)},
+    {"indirect_true", 3, false, true, offsetof(train_view, indirect)},
+    {"image", 3, false, false, offsetof(train_view, image)},
+    {"reconstruction_true", 3, false, true, offsetof(train_view, reconstruction)},
+    {"relit_true", 3, false, true, offsetof(train_view, relit)},
+    {"loss_mask", 1, false, true, offsetof(train_view, loss_mask)},
+    {"light_position", 3, true, true, offsetof(train_view, light)},
     /* for both lights only: */
-    {NULL, 3, false, offsetof(train_view, env)},
-    {"environment_true", MODEL_SH, true, offsetof(train_view, sh)},
-    {NULL, MODEL_SH, true, offsetof(train_view, target_sh)},
+    {NULL, 3, false, false, offsetof(train_view, env)},
+    {"environment_true", MODEL_SH, true, false, offsetof(train_view, sh)},
+    {NULL, MODEL_SH, true, false, offsetof(train_view, target_sh)},
     /* for any light only: */
-    {NULL, TRAIN_LAMPS *TRAIN_LAMP_VALUES, false, offsetof(train_view, lamps)},
-    {NULL, 3, false, offsetof(train_view, photo)},
-    {"sight", MODEL_SIGHT, false, offsetof(train_view, sight)},
-    {"lens", 3, true, offsetof(train_view, lens_values)},
-    {"lights_true", MODEL_LIGHTS, true, offsetof(train_view, lights)},
-    {"lamp_weight", 1, true, offsetof(train_view, lamp_weight)},
-    {"rest_weight", 1, true, offsetof(train_view, rest_weight)},
-    {"visibility_true", 1, false, offsetof(train_view, visibility)},
-    {"visibility_weight", 1, false, offsetof(train_view, visibility_weight)},
+    {NULL, TRAIN_LAMPS *TRAIN_LAMP_VALUES, false, false, offsetof(train_view, lamps)},
+    {NULL, 3, false, false, offsetof(train_view, photo)},
+    {"sight", MODEL_SIGHT, false, false, offsetof(train_view, sight)},
+    {"lens", 3, true, true, offsetof(train_view, lens_values)},
+    {"lights_true", MODEL_LIGHTS, true, false, offsetof(train_view, lights)},
+    {"lamp_weight", 1, true, false, offsetof(train_view, lamp_weight)},
+    {"rest_weight", 1, true, false, offsetof(train_view, rest_weight)},
+    {"visibility_true", 1, false, false, offsetof(train_view, visibility)},
+    {"visibility_weight", 1, false, false, offsetof(train_view, visibility_weight)},
 };
 
 /* Returns how many of them this kind of training has. */
@@ -77,11 +77,13 @@ static status connect(train_loader *l, nn_program *program, int which)
     const field *d = &fields[which];
     size_t size = (size_t)l->source.config->size;
     size_t stride = (size_t)d->channels * (d->vector ? 1 : size * size);
+    const size_t pictures = d->of_object ? (size_t)l->source.pictures : 1;
     float *data = d->input ? nn_input_data(program, d->input) : NULL;
-    if (!data) data = l->spare[which] = calloc(l->batch * stride, sizeof *data);
-    if (!data) return fail(MERLIN_NO_MEMORY, "out of memory for a batch of %zu", l->batch);
+    if (!data || pictures > 1) l->spare[which] = calloc(l->batch * stride, sizeof *data);
+    if ((!data || pictures > 1) && !l->spare[which])
+        return fail(MERLIN_NO_MEMORY, "out of memory for a batch of %zu", l->batch);
     for (size_t i = 0; i < l->batch; i++) {
-        float *place = data + i * stride;
+        float *place = data && i % pictures == 0 ? data + i / pictures * stride : l->spare[which] + i * stride;
         memcpy((char *)&l->items[i].view + d->offset, &place, sizeof place);
         l->items[i].view.size = (int)size;
     }
@@ -146,11 +148,23 @@ static status draw_environments(const train_loader *l, const item *it, train_lig
 static status add_faults(const train_loader *l, const item *it, train_camera *lens)
 {
     const train_config *c = l->source.config;
-    rng faults = rng_at((uint64_t)c->seed, it->presentation, TRAIN_STREAM_FAULTS);
-    rng moving = rng_at((uint64_t)c->seed, it->presentation, TRAIN_STREAM_MOTION);
+    rng faults = rng_at((uint64_t)c->seed, it->first, TRAIN_STREAM_FAULTS);
+    rng moving = rng_at((uint64_t)c->seed, it->first, TRAIN_STREAM_MOTION);
     train_camera_degrade(c, &faults, lens);
     train_motion motion = train_motion_draw(c, &moving);
     return train_motion_moves(&motion) ? train_move(&it->view, &motion) : OK;
+}
+
+/* What all pictures of an object share. */
+typedef struct shared {
+    vec3 target;
+    int orientation;
+} shared;
+
+static shared draw_shared(const train_loader *l, rng *r)
+{
+    const vec3 target = train_draw_light(r);
+    return (shared){target, l->validation ? 0 : rng_below(r, ORIENTATIONS)};
 }
 
 /* Prepares a sample under any light. Validation uses all kinds of mixtures, too, by a perfect camera with exposure and
@@ -158,18 +172,19 @@ static status add_faults(const train_loader *l, const item *it, train_camera *le
 static status fill_any(train_loader *l, item *it)
 {
     const train_config *c = l->source.config;
-    rng r = rng_at(seed_of(l), it->presentation, l->validation ? TRAIN_STREAM_VALIDATION : TRAIN_STREAM_PRESENTATION);
+    const uint64_t stream = l->validation ? TRAIN_STREAM_VALIDATION : TRAIN_STREAM_PRESENTATION;
+    rng r = rng_at(seed_of(l), it->presentation, stream), object = rng_at(seed_of(l), it->first, stream);
     rng light = rng_at(seed_of(l), 2 * it->presentation + l->validation, TRAIN_STREAM_MIXTURE);
-    const vec3 target = train_draw_light(&r);
-    int orientation = l->validation ? 0 : rng_below(&r, ORIENTATIONS);
+    const shared common = draw_shared(l, &object);
+    draw_shared(l, &r); /* the camera's numbers come behind these */
     train_camera lens = l->validation ? train_camera_perfect() : train_camera_draw(c, &r);
-    status s = train_dataset_get(l->source.data, it->sample, orientation, &it->view);
+    status s = train_dataset_get(l->source.data, it->sample, common.orientation, &it->view);
     if (s == OK && !l->validation) s = add_faults(l, it, &lens);
     if (s != OK) return s;
     train_mixture mixture;
     train_mixture_draw(&it->view, &light, &lens, &mixture);
     if (!l->validation) train_camera_add_response(&light, &lens);
-    return train_prepare_any(&it->view, &mixture, &lens, target, &r);
+    return train_prepare_any(&it->view, &mixture, &lens, common.target, &r);
 }
 
 static status fill_item(void *context, size_t i)
@@ -201,22 +216,30 @@ static status fill(train_loader *l)
     return OK;
 }
 
+/* Numbers the presentations of a batch. */
+static void number(train_loader *l, uint64_t first)
+{
+    const uint64_t pictures = (uint64_t)l->source.pictures;
+    for (size_t i = 0; i < l->batch; i++) {
+        l->items[i].presentation = first + i;
+        l->items[i].first = first + i / pictures * pictures;
+    }
+}
+
 status train_loader_training(train_loader *l, train_order *order, uint64_t first)
 {
     l->validation = false;
-    for (size_t i = 0; i < l->batch; i++) {
-        l->items[i].presentation = first + i;
-        l->items[i].sample = train_order_at(order, first + i);
-    }
+    number(l, first);
+    for (size_t i = 0; i < l->batch; i++)
+        l->items[i].sample = train_order_at(order, l->items[i].first);
     return fill(l);
 }
 
 status train_loader_validation(train_loader *l, size_t first)
 {
     l->validation = true;
-    for (size_t i = 0; i < l->batch; i++) {
-        l->items[i].presentation = first + i;
-        l->items[i].sample = l->source.training_count + first + i;
-    }
+    number(l, first);
+    for (size_t i = 0; i < l->batch; i++)
+        l->items[i].sample = l->source.training_count + (size_t)l->items[i].first;
     return fill(l);
 }

@@ -17,7 +17,8 @@ typedef struct train_source {
     bool environment; /* setting B; the data set has environments */
     bool any;         /* any light, any lens; the data set has lamps */
     size_t training_count;
-    int batch; /* of the program: a rank's share of the configuration's */
+    int batch;    /* of the program: a rank's share of the configuration's */
+    int pictures; /* of each object: consecutive presentations show the first one's sample, each in its own light */
 } train_source;
 
 status train_loader_new(nn_program *program, const train_source *source, train_loader **out);

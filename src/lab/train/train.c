@@ -10,7 +10,7 @@
 #include "base/messages.h"
 #include "base/progress.h"
 #include "lab/train/checkpoint.h"
-#include "lab/train/loader.h"
+#include "lab/train/train_programs.h"
 
 typedef struct paths {
     char *checkpoint, *curves, *validation, *chart, *weights, *seconds;
@@ -28,9 +28,10 @@ typedef struct run {
     nn_graph *graph;
     nn_params *params;
     nn_adam *adam;
-    train_average *average;           /* NULL: the last weights are the run's result */
-    nn_program *program, *validation; /* validation: the same losses by running statistics */
-    train_loader *loader, *validation_loader;
+    train_average *average; /* NULL: the last weights are the run's result */
+    train_programs programs;
+    nn_program *last;          /* the program of the last step */
+    train_programs validation; /* the same losses by running statistics; empty: none */
     train_order order;
     train_state state;
     double resumed_at, saved_at, seconds_before; /* seconds: of the machine's clock, spent training */
@@ -40,10 +41,8 @@ typedef struct run {
 static void close_run(run *r)
 {
     train_order_free(&r->order);
-    train_loader_free(r->loader);
-    train_loader_free(r->validation_loader);
-    nn_program_free(r->program);
-    nn_program_free(r->validation);
+    train_programs_free(&r->programs);
+    train_programs_free(&r->validation);
     train_average_free(r->average);
     nn_adam_free(r->adam);
     nn_params_free(r->params);
@@ -72,6 +71,8 @@ static status read_configuration(run *r)
     r->batch = r->training.batch / sharing;
     if (r->training.batch % sharing)
         return fail(MERLIN_WRONG_USE, "a batch of %d is not to be shared by %d ranks", r->training.batch, sharing);
+    if (r->training.most_pictures != 1 && !r->model.several)
+        return fail(MERLIN_BAD_INPUT, "%s: \"most_pictures\" needs a model with \"several\"", r->options->config);
     r->model_json = model_config_write(&r->model);
     return r->model_json ? OK : fail(MERLIN_NO_MEMORY, "out of memory");
 }
@@ -87,7 +88,7 @@ static void share_type(run *r)
 /* Records the number type that is used instead of "auto": another type would give other sums. */
 static status record_training(run *r)
 {
-    r->training.type = nn_program_type(r->program);
+    r->training.type = nn_program_type(r->programs.at[0].program);
     r->training_json = train_config_write(&r->training);
     return r->training_json ? OK : fail(MERLIN_NO_MEMORY, "out of memory");
 }
@@ -151,13 +152,19 @@ static status open_data(run *r)
     return train_order_new(&r->order, (uint64_t)r->training.seed, r->training_count);
 }
 
-static void weigh_losses(nn_program *p, const train_config *c)
+static void weigh_losses_of(nn_program *p, const train_config *c)
 {
     nn_set_loss_weight(p, "albedo", (float)c->albedo_weight);
     nn_set_loss_weight(p, "depth", (float)c->depth_weight);
     nn_set_loss_weight(p, "relight_brdf", (float)c->relight_brdf_weight);
     nn_set_loss_weight(p, "relight_ssim", (float)c->ssim_weight);
     nn_set_loss_weight(p, "relight_brdf_ssim", (float)c->ssim_weight);
+}
+
+static void weigh_losses(const train_programs *programs, const train_config *c)
+{
+    for (int i = 0; i < programs->count; i++)
+        weigh_losses_of(programs->at[i].program, c);
 }
 
 /* Returns the part of the graph with the losses that are configured. */
@@ -185,8 +192,9 @@ static status build(run *r)
                           .purpose = NN_TRAIN,
                           .together = r->options->together};
     nn_adam_options adam = {(float)c->beta1, (float)c->beta2, 1e-8f, (float)c->clip_norm, (float)c->weight_decay};
-    train_source source = {r->data,           c,       r->model.input_global, is_lit_by_both(r), is_lit_by_any(r),
-                           r->training_count, r->batch};
+    train_source source = {r->data,  c, r->model.input_global, is_lit_by_both(r), is_lit_by_any(r), r->training_count,
+                           r->batch, 1};
+    const int most = (int)c->most_pictures;
     status s = model_build(&r->model, part_of(c), &r->graph);
     if (s == OK) s = nn_params_new(r->graph, (uint64_t)c->seed, &r->params);
     if (s == OK) s = load_weights(r->params, r->options);
@@ -194,15 +202,15 @@ static status build(run *r)
     nn_params_scale_rate(r->params, "encoder.", (float)c->encoder_rate_scale);
     s = nn_adam_new(r->params, &adam, &r->adam);
     if (s == OK && c->average_decay > 0) s = train_average_new(r->params, c->average_decay, &r->average);
-    if (s == OK) s = nn_compile(r->graph, r->params, &options, &r->program);
+    if (s == OK) s = train_programs_new(r->graph, r->params, &options, &source, most, &r->programs);
     if (s == OK) s = record_training(r);
-    if (s == OK) s = train_loader_new(r->program, &source, &r->loader);
-    if (s == OK) weigh_losses(r->program, c);
-    if (s != OK || c->validation_count == 0) return s;
+    if (s != OK) return s;
+    weigh_losses(&r->programs, c);
+    if (c->validation_count == 0) return OK;
     options.purpose = NN_INFER;
-    s = nn_compile(r->graph, r->params, &options, &r->validation);
-    if (s == OK) weigh_losses(r->validation, c);
-    return s == OK ? train_loader_new(r->validation, &source, &r->validation_loader) : s;
+    s = train_programs_new(r->graph, r->params, &options, &source, most, &r->validation);
+    weigh_losses(&r->validation, c);
+    return s;
 }
 
 static train_learner learner_of(const run *r)
@@ -329,7 +337,7 @@ static status save(run *r)
     train_identity identity = identity_of(r);
     train_learner learner = learner_of(r);
     /* before the checkpoint: after the last one nothing is repeated */
-    status s = r->validation ? OK : with_average(r, export_weights);
+    status s = r->validation.count ? OK : with_average(r, export_weights);
     if (s == OK) s = train_curve_keep(r->paths.curves);
     if (s == OK) s = train_curve_keep(r->paths.validation);
     if (s == OK) s = train_checkpoint_write(r->paths.checkpoint, &learner, &r->state, &identity);
@@ -353,6 +361,11 @@ static train_curve_row row_of(const run *r)
                                                      (uint64_t)(r->state.step - 1) * (uint64_t)r->training.batch)};
 }
 
+static const train_program *program_at(const run *r, int64_t step)
+{
+    return train_programs_at(&r->programs, (uint64_t)r->training.seed, (uint64_t)step);
+}
+
 /* Recomputes batch norm's running statistics as the mean over many batches with fixed weights ("precise BN", Wu and
  * Johnson 2021). The moving averages cover ten batches, too few for the coarsest level, where a handful of pixels
  * decides about the depth of the whole object. The batches are those that come next. */
@@ -362,11 +375,12 @@ static status settle_statistics(run *r)
     uint64_t first = own_presentations(r);
     status s = OK;
     for (int i = 0; s == OK && i < SETTLING_BATCHES; i++) {
-        nn_set_norm_momentum(r->program, 1.0f / (float)(i + 1));
-        s = train_loader_training(r->loader, &r->order, first + (uint64_t)i * (uint64_t)r->training.batch);
-        if (s == OK) s = nn_forward(r->program);
+        const train_program *p = program_at(r, r->state.step + i);
+        nn_set_norm_momentum(p->program, 1.0f / (float)(i + 1));
+        s = train_loader_training(p->loader, &r->order, first + (uint64_t)i * (uint64_t)r->training.batch);
+        if (s == OK) s = nn_forward(p->program);
+        nn_set_norm_momentum(p->program, NN_NORM_MOMENTUM);
     }
-    nn_set_norm_momentum(r->program, NN_NORM_MOMENTUM);
     nn_params_touch(r->params);
     return s;
 }
@@ -378,10 +392,11 @@ static status validate(run *r)
     if (settled != OK) return settled;
     for (int first = 0; first < r->training.validation_count; first += r->training.batch) {
         const int own = first + ranks_index(r->options->together) * r->batch;
-        status s = train_loader_validation(r->validation_loader, (size_t)own);
-        if (s == OK) s = nn_forward(r->validation);
+        const train_program *p = &r->validation.at[first / r->training.batch % r->validation.count];
+        status s = train_loader_validation(p->loader, (size_t)own);
+        if (s == OK) s = nn_forward(p->program);
         if (s != OK) return s;
-        train_losses_add(&losses, r->validation);
+        train_losses_add(&losses, p->program);
     }
     train_curve_row row = row_of(r);
     status s = is_first(r) ? train_curve_append(r->paths.validation, &row, &losses) : OK;
@@ -405,16 +420,19 @@ static status end_row(run *r)
 static status one_step(run *r)
 {
     uint64_t first = (uint64_t)presented(r);
-    status s = train_loader_training(r->loader, &r->order, own_presentations(r));
-    if (s == OK) s = nn_forward(r->program);
-    if (s == OK) s = nn_backward(r->program);
+    const train_program *p = program_at(r, r->state.step);
+    status s = train_loader_training(p->loader, &r->order, own_presentations(r));
+    if (s == OK) s = nn_forward(p->program);
+    if (s == OK) s = nn_backward(p->program);
     if (s == OK) s = nn_adam_step(r->adam, (float)train_learning_rate(&r->training, r->training_count, first));
     if (s != OK) return s;
-    train_losses_add(&r->state.open, r->program);
+    train_losses_add(&r->state.open, p->program);
+    r->last = p->program;
     r->state.step++;
     if (r->average) train_average_add(r->average, r->state.step, r->state.step == last_step(r));
     if (r->state.step % r->training.curve_steps == 0) s = end_row(r);
-    if (s == OK && r->validation && r->training.validation_steps && r->state.step % r->training.validation_steps == 0)
+    if (s == OK && r->validation.count && r->training.validation_steps &&
+        r->state.step % r->training.validation_steps == 0)
         s = with_average(r, validate);
     return s;
 }
@@ -443,7 +461,7 @@ static status steps(run *r, int64_t last, progress *bar)
         if (s == OK && is_time_to_save(r, last)) s = save(r);
         if (s != OK) return s;
         char note[64];
-        snprintf(note, sizeof note, "loss %.4f", (double)nn_total_loss(r->program));
+        snprintf(note, sizeof note, "loss %.4f", (double)nn_total_loss(r->last));
         progress_update(bar, (size_t)presented(r), note);
         if (r->state.step < last) s = ask_to_stop(r, &stop);
         if (s != OK) return s;
@@ -467,8 +485,8 @@ static status go(run *r)
     status s = steps(r, last, &bar);
     progress_end(&bar);
     if (s != OK || finished_before) return s;
-    if (!r->validation) s = with_average(r, settle_statistics);
-    if (r->validation && (validation_steps == 0 || last % validation_steps != 0)) s = with_average(r, validate);
+    if (!r->validation.count) s = with_average(r, settle_statistics);
+    if (r->validation.count && (validation_steps == 0 || last % validation_steps != 0)) s = with_average(r, validate);
     return s == OK ? save(r) : s;
 }
 

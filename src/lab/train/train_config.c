@@ -43,6 +43,7 @@ static const optional optionals[] = {
     {"relight_brdf_weight", 1e4, offsetof(train_config, relight_brdf_weight), 0},
     {"ssim_weight", 1e4, offsetof(train_config, ssim_weight), 0},
     {"dark_target", 1, offsetof(train_config, dark_target), 0},
+    {"most_pictures", 64, offsetof(train_config, most_pictures), 1},
     {"weight_decay", 1, offsetof(train_config, weight_decay), 0},
     {"average_decay", 0.999999, offsetof(train_config, average_decay), 0},
 };
@@ -57,6 +58,12 @@ static status read_optionals(json_object *o, train_config *c)
         memcpy((char *)c + optionals[i].offset, &value, sizeof value);
     }
     return s;
+}
+
+static status check_pictures(const char *where, const train_config *c)
+{
+    if (c->most_pictures >= 1 && c->most_pictures == (int)c->most_pictures) return OK;
+    return fail(MERLIN_BAD_INPUT, "%s: \"most_pictures\" must be a whole number of at least 1", where);
 }
 
 /* Writes the optional keys that differ from their defaults, each after a comma and a space. */
@@ -97,6 +104,7 @@ static status read_training(json_object *o, const char *where, train_config *c)
     if (s == OK) s = json_number(o, "exposure_jitter", 0, 2, &c->exposure_jitter);
     if (s == OK) s = json_number(o, "colour_jitter", 0, 1, &c->colour_jitter);
     if (s == OK) s = read_optionals(o, c);
+    if (s == OK) s = check_pictures(where, c);
     if (s == OK) s = json_number(o, "memory_gib", 0, 1e5, &c->memory_gib);
     if (s == OK) s = read_intervals(o, c);
     if (s == OK && c->validation_count % c->batch)

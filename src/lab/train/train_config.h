@@ -34,6 +34,8 @@ typedef struct train_config {
     double ssim_weight;   /* of the structural dissimilarity of relit images, by network and by BRDF; 0: none, as in the
                            * paper (docs/notes/similarity_in_training.md) */
     double dark_target;   /* setting B: share of targets without an environment */
+    double most_pictures; /* of an object at once; each step has a number of them that divides a rank's batch. 1 unless
+                           * the model takes several */
     double weight_decay;  /* of convolutions and fully connected layers, decoupled (nn_adam_options) */
     double average_decay; /* of the weights' mean (train/average.h), which is validated and exported; 0: the last
                            * weights are */

@@ -58,6 +58,7 @@ static const struct run {
     {"merlin-any/04-fresh-256", 0x2d9fd6d96df4ee11},
     {"merlin-any/05-fresh-256", 0x59383e2a8dce34a7},
     {"merlin-any/06-fresh-256", 0xbc3bf35512299692},
+    {"merlin-several/01-96", 0x2fde7ff2f3342ae1},
     {"table1/9", 0xbbb71aa70cd2c4fd},
     {"table1/1", 0x7ca4d5a3ee4eb604},
     {"table1/2", 0x47c9970c8d4bb1c0},
@@ -144,7 +145,7 @@ static void every_network_can_be_read_and_has_its_files_name(void **unused)
         size_t length = strlen(m.name);
         assert_int_equal(strncmp(name, m.name, length), 0);
         assert_true(name[length] == '-' || name[length] == '.');
-        bool both = strncmp(name, "merlin-env", 10) == 0, any = strncmp(name, "merlin-any", 10) == 0;
+        bool both = strncmp(name, "merlin-env", 10) == 0, any = strncmp(name, "merlin-any", 10) == 0 || m.several;
         /* table 1 is of the point setting, too */
         assert_int_equal(m.lighting, both ? MODEL_LIGHT_BOTH : any ? MODEL_LIGHT_ANY : MODEL_LIGHT_POINT);
     }
