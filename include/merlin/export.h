@@ -58,7 +58,7 @@ typedef struct merlin_export_facts {
 /* Writes the files into a folder, which is created if necessary: all of them or, after a failure, none. params NULL:
  * the defaults. facts and written (the files' paths) may be NULL. MERLIN_WRONG_USE for an impossible sum or side, and
  * for MERLIN_EXPORT_MATERIALX with normal_down, which MaterialX cannot express; MERLIN_EXPORT_ALL leaves it out then.
- */
+ * MERLIN_CANNOT_WRITE if the folder has files of these names that no export wrote. */
 merlin_status merlin_maps_export(const merlin_maps *maps, const merlin_export_params *params, const char *folder,
                                  merlin_export_facts *facts, merlin_files *written);
 

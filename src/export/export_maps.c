@@ -32,6 +32,12 @@ enum {
     OF_MATERIALX = MERLIN_EXPORT_ALBEDO | MERLIN_EXPORT_NORMAL | MERLIN_EXPORT_ROUGHNESS,
 };
 
+/* Names of the files, in the order of merlin_export_map's bits. */
+static const char *const map_names[] = {"albedo.png", "normal.png", "roughness.png", "smoothness.png", "ao.png",
+                                        "orm.png",    "height.png", "height.exr",    "alpha.png",      "material.mtlx"};
+enum { MAPS = sizeof map_names / sizeof *map_names };
+#define FACTS "export.json"
+
 typedef struct export_job {
     const merlin_maps *maps;
     unsigned wanted;
@@ -118,10 +124,11 @@ static status fill_textures(export_job *j)
 
 /* ---- files ---- */
 
-static const char *file_of(export_job *j, const char *name, char path[PATH_MAX])
+/* Lists a map's file, and composes its path. */
+static const char *file_of(export_job *j, int map, char path[PATH_MAX])
 {
-    json_append_text(j->list, name);
-    return staging_path(j->files, name, path);
+    json_append_text(j->list, map_names[map]);
+    return staging_path(j->files, map_names[map], path);
 }
 
 static void encode_normals(const void *context, size_t first, size_t count, float *values)
@@ -170,32 +177,31 @@ static status write_height_exr(const export_job *j, const char *path)
     return exr_write(path, j->height.width, j->height.height, &channel, 1, NULL, 0);
 }
 
-static status write_map(export_job *j, merlin_export_map which)
+static status write_map(export_job *j, int map)
 {
     char path[PATH_MAX];
-    switch (which) {
+    file_of(j, map, path);
+    switch ((merlin_export_map)(1 << map)) {
     case MERLIN_EXPORT_ALBEDO:
-        return img_write_png(file_of(j, "albedo.png", path), &j->of.albedo, IMG_SRGB8);
+        return img_write_png(path, &j->of.albedo, IMG_SRGB8);
     case MERLIN_EXPORT_NORMAL:
-        return img_write_png_changed(file_of(j, "normal.png", path), &j->of.normal, IMG_LINEAR16, encode_normals, j);
+        return img_write_png_changed(path, &j->of.normal, IMG_LINEAR16, encode_normals, j);
     case MERLIN_EXPORT_ROUGHNESS:
-        return img_write_png(file_of(j, "roughness.png", path), &j->of.roughness, IMG_LINEAR8);
+        return img_write_png(path, &j->of.roughness, IMG_LINEAR8);
     case MERLIN_EXPORT_SMOOTHNESS:
-        return img_write_png_changed(file_of(j, "smoothness.png", path), &j->of.roughness, IMG_LINEAR8,
-                                     encode_smoothness, NULL);
+        return img_write_png_changed(path, &j->of.roughness, IMG_LINEAR8, encode_smoothness, NULL);
     case MERLIN_EXPORT_OCCLUSION:
-        return img_write_png(file_of(j, "ao.png", path), &j->occlusion, IMG_LINEAR8);
+        return img_write_png(path, &j->occlusion, IMG_LINEAR8);
     case MERLIN_EXPORT_ORM:
-        return write_orm(j, file_of(j, "orm.png", path));
+        return write_orm(j, path);
     case MERLIN_EXPORT_HEIGHT:
-        return img_write_png_changed(file_of(j, "height.png", path), &j->height, IMG_LINEAR16, encode_height,
-                                     &j->facts.relief);
+        return img_write_png_changed(path, &j->height, IMG_LINEAR16, encode_height, &j->facts.relief);
     case MERLIN_EXPORT_HEIGHT_FLOAT:
-        return write_height_exr(j, file_of(j, "height.exr", path));
+        return write_height_exr(j, path);
     case MERLIN_EXPORT_ALPHA:
-        return img_write_png(file_of(j, "alpha.png", path), &j->of.mask, IMG_LINEAR8);
+        return img_write_png(path, &j->of.mask, IMG_LINEAR8);
     case MERLIN_EXPORT_MATERIALX:
-        return materialx_write(file_of(j, "material.mtlx", path), j->maps->captured);
+        return materialx_write(path, j->maps->captured);
     case MERLIN_EXPORT_ALL:
         break;
     }
@@ -216,7 +222,7 @@ static status write_facts(export_job *j)
     char *text = json_print(o);
     cJSON_Delete(o);
     if (!text) return fail(MERLIN_NO_MEMORY, "no memory for export.json");
-    status s = file_write(staging_path(j->files, "export.json", path), text, strlen(text));
+    status s = file_write(staging_path(j->files, FACTS, path), text, strlen(text));
     free(text);
     return s;
 }
@@ -251,7 +257,7 @@ static status compute(export_job *j, int side)
     return s == OK ? fill_textures(j) : s;
 }
 
-/* Checks that nothing in the folder would be replaced by pictures of other kinds, or contradict them. */
+/* Checks that nothing in the folder would be replaced that is no earlier export's, or contradict these files. */
 static status check_folder(const export_job *j, const char *folder)
 {
     if (file_is_in(folder, "maps.exr"))
@@ -260,6 +266,12 @@ static status check_folder(const export_job *j, const char *folder)
     if (j->normal_down && (j->wanted & MERLIN_EXPORT_NORMAL) && file_is_in(folder, "material.mtlx"))
         return fail(MERLIN_CANNOT_WRITE, "%s has a material.mtlx, for normals whose green is up: choose another folder",
                     folder);
+    for (int map = 0; map < MAPS && !file_is_in(folder, FACTS); map++)
+        if (j->wanted & 1U << map && file_is_in(folder, map_names[map]))
+            return fail(MERLIN_CANNOT_WRITE,
+                        "cannot write into %s: its %s is no earlier export's, for there is no " FACTS
+                        " beside it, and would be replaced; choose another folder",
+                        folder, map_names[map]);
     return OK;
 }
 
@@ -268,8 +280,8 @@ static status write_all(export_job *j, const char *folder, merlin_files *written
     status s = staging_begin(folder, NULL, &j->files);
     if (s != OK) return s;
     j->list = cJSON_CreateArray();
-    for (unsigned bit = 1; s == OK && bit < MERLIN_EXPORT_ALL; bit <<= 1)
-        if (j->wanted & bit) s = write_map(j, (merlin_export_map)bit);
+    for (int map = 0; s == OK && map < MAPS; map++)
+        if (j->wanted & 1U << map) s = write_map(j, map);
     if (s == OK)
         s = write_facts(j);
     else

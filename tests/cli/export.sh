@@ -64,6 +64,11 @@ refuses 2 '--size' export_maps cup.merlin --size 63
 refuses 1 'there is no folder nowhere' export_maps nowhere
 refuses 1 'is no folder of maps: merlin estimate' export_maps "$examples/demo.png"
 refuses 1 'choose another folder' export_maps cup.merlin -o cup.merlin
+mkdir mine && echo mine >mine/normal.png
+refuses 1 'cannot write into mine: its normal.png is no earlier export' export_maps cup.merlin --size 128 -o mine
+[ "$(ls mine)" = normal.png ] && [ "$(cat mine/normal.png)" = mine ] || complain "mine has $(ls mine)"
+succeeds . export_maps cup.merlin --maps orm --size 128 -o mine # which replaces nothing
+succeeds . export_maps cup.merlin --maps orm --size 64 -o mine
 mkdir empty
 refuses 1 'no maps.exr in empty' export_maps empty
 : >taken

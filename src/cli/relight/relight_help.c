@@ -73,7 +73,7 @@ static const char help_on_options[] =
     "      --model W        weights: merlin-any (any light), merlin-point (flash alone), merlin-env (flash in a "
     "room),\n"
     "                       or a file (default: $MERLIN_MODEL, else merlin-any, and merlin-point for photographs\n"
-    "                       that it sees lit by a flash alone)\n"
+    "                       that it sees lit by a flash alone; for a DIR the weights of its maps)\n"
     "      --json           a report as JSON on standard output\n"
     "  -t, --threads N      how many threads work (default: one a processor)\n"
     "  -q, --quiet          no other output than errors\n"
