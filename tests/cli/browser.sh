@@ -27,27 +27,35 @@ page=http://127.0.0.1:$(grep -o 'port [0-9]*' port.txt | cut -d' ' -f2)/index.ht
 in_page() { browser_eval "(async () => { $hands
 return $1; })()"; }
 
-# estimated PHOTO FOLDER OPTIONS-OF-MERLIN...: the photograph's maps by the page in FOLDER, and by the command in FOLDER.merlin.
+# dropped PHOTO PATTERN: the page takes it, and says so of its object.
+dropped() {
+    local said
+    browser_drop '#files' "$1"
+    said=$(in_page 'await taken() + get("object").textContent')
+    [[ $said =~ $2 ]] || complain "the page says of $1: $said"
+}
+
+# estimated PHOTO FOLDER OPTIONS-OF-MERLIN...: the maps of the photograph that was taken by the page in FOLDER, and by the
+# command in FOLDER.merlin.
 estimated() {
     local photo=$1 folder=$2 name
     shift 2
-    browser_drop '#files' "$photo"
-    in_page 'await taken()'
     echo "  $(in_page 'await estimated()')"
     mkdir "$folder"
-    for name in albedo.png normal.png roughness.png depth.png reconstruction.png mask.png report.json viewer.html; do
+    for name in albedo.png normal.png roughness.png depth.png reconstruction.png mask.png maps.exr report.json viewer.html; do
         in_page "await file('$name')" | base64 -d >"$folder/$name"
     done
     "$MERLIN" estimate "$photo" -o "$folder.merlin" "$@" >/dev/null 2>stderr || complain "estimate $photo: $(cat stderr)"
 }
 
-# close FOLDER DEGREES ALBEDO OTHERS: the maps differ from the command's by at most so many degrees and per cent in the mean.
+# close FOLDER DEGREES ALBEDO OTHERS [MAP]: the maps, and MAP, differ from the command's by at most so many degrees and per cent
+# in the mean.
 close() {
     local angle name differ most
     angle=$("$NORMALS_DIFFER" "$1" "$1.merlin")
     awk -v a="${angle:-90}" -v most="$2" 'BEGIN { exit !(a <= most) }' || complain "$1: normals differ by $angle degrees"
     echo "  normals $angle degrees"
-    for name in albedo roughness depth reconstruction mask; do
+    for name in albedo roughness depth mask ${5-}; do
         differ=$("${PICTURES_DIFFER:?}" "$1.merlin/$name.png" "$1/$name.png")
         most=$4
         [[ $name != albedo ]] || most=$3
@@ -61,12 +69,62 @@ browser_open "$page" 1200 900
 # The command computes networks in bfloat16 where the processor does, the page in float32. Measured: normals 0.13 degrees, albedo
 # 0.05 per cent, roughness 0.19, depth 0.13, the reconstruction 0.06.
 echo "a photograph by flash has the command's maps"
+dropped "$examples/demo.png" '^The object was found.$'
 estimated "$examples/demo.png" flash
-close flash 0.5 0.2 0.5
+close flash 0.5 0.2 0.5 reconstruction
+grep -q '"model":.*"merlin-point"' flash/report.json || complain "the flash was not seen: $(grep '"model"' flash/report.json)"
+
+echo "the files it gives are a folder for merlin's commands"
+for folder in flash flash.merlin; do
+    "$MERLIN" relight "$folder" --light 0.7,0.3,-0.4 -o "$folder.relit" >/dev/null 2>stderr || complain "relight $folder: $(cat stderr)"
+done
+differ=$("$PICTURES_DIFFER" flash.relit/relit.png flash.merlin.relit/relit.png)
+awk '{ exit !($1 <= 0.5) }' <<<"${differ:-100}" || complain "relit they differ by $differ per cent"
+succeeds flash "$MERLIN" view flash -o again.html
+
 echo "a photograph in a window's light has the command's maps"
-in_page 'get("quick").click()'
+in_page 'choose("quick", true)' >/dev/null
+dropped "$examples/window.png" '^The object was found.$'
 estimated "$examples/window.png" window --size 256
-close window 0.5 0.2 0.5
+close window 0.5 0.2 0.5 reconstruction
+
+echo "a turned JPEG, whose EXIF tells lens and flash, with a painted mask has the command's maps"
+in_page "await jpeg_of('reconstruction.png', 600, 480)" | base64 -d >plain.jpg
+{
+    head -c 2 plain.jpg
+    printf '\xff\xe1\0\x4cExif\0\0MM\0*\0\0\0\x08'
+    printf '\0\x02\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\x87\x69\0\x04\0\0\0\x01\0\0\0\x26\0\0\0\0'
+    printf '\0\x02\x92\x09\0\x03\0\0\0\x01\0\x10\0\0\xa4\x05\0\x03\0\0\0\x01\0\x32\0\0\0\0\0\0'
+    tail -c +3 plain.jpg
+} >turned.jpg
+dropped turned.jpg .
+said=$(in_page 'get("picture").width + " " + get("picture").height + " " + get("fov").placeholder')
+[[ $said == "480 600 "* ]] || complain "a turned photograph is so wide and high, and so much is its field of view: $said"
+said=$(in_page 'await painted("add", [0.05, 0.95], [0.12, 0.95])')
+[[ $said == "The mask is yours." ]] || complain "the page says of a painted mask: $said"
+estimated turned.jpg turned --size 256 --mask turned/mask.png
+grep -q '"model":.*"merlin-any"' turned/report.json || complain "no flash fired, and yet: $(grep '"model"' turned/report.json)"
+close turned 0.5 0.2 0.5 # no light is found in this made photograph: its reconstruction is black
+
+echo "trouble is told"
+printf 'no picture' >words.png
+dropped words.png 'cannot open this picture'
+said=$(in_page 'nameless()')
+[[ -z $said ]] || complain "these have no name for screen readers: $said"
+said=$(in_page 'await fetch("http://localhost:9/").then(() => "reached", () => "refused")')
+[[ $said == refused ]] || complain "the page may reach another host"
+
+echo "once its networks are there the page needs no server"
+kill "$server"
+wait "$server" 2>/dev/null
+dropped "$examples/demo.png" '^The object was found.$'
+said=$(in_page 'await estimated()')
+[[ $said == "Done by merlin-point, "* ]] || complain "without its server the page says $said"
+
+echo "narrow windows have all of it"
+browser_call Emulation.setDeviceMetricsOverride '{"width":320,"height":640,"deviceScaleFactor":1,"mobile":true}'
+wide=$(browser_eval '`${document.documentElement.scrollWidth}`')
+[[ $wide -le 320 ]] || complain "the page is $wide pixels wide in a window of 320"
 
 browser_end
 finish

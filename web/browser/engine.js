@@ -20,11 +20,9 @@ export const STOPPED = 6; // MERLIN_STOPPED
 export class Engine {
     files = new Map(); // what page_write has written, by name
 
-    static async load(address) {
+    static async start(program) {
         const engine = new Engine();
-        const answer = await fetch(address);
-        if (!answer.ok) throw new Error(`The page is incomplete: ${address} is missing (${answer.status}).`);
-        const { instance } = await WebAssembly.instantiate(await answer.arrayBuffer(), engine.imports());
+        const { instance } = await WebAssembly.instantiate(program, engine.imports());
         engine.calls = instance.exports;
         engine.calls._initialize();
         return engine;

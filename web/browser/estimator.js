@@ -6,7 +6,9 @@ export class Estimator {
     last = 0;
 
     constructor() {
-        this.worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
+        // A worker of a blob has the page's content policy, by which it cannot reach another host; one of a file has none.
+        const program = new Blob([`import ${JSON.stringify(new URL("./worker.js", import.meta.url).href)};`], { type: "text/javascript" });
+        this.worker = new Worker(URL.createObjectURL(program), { type: "module" });
         this.worker.onmessage = ({ data: { id, told, result, error } }) => {
             const call = this.calls.get(id);
             if (told) return call?.told?.(told);

@@ -7,10 +7,11 @@ export const threads = self.crossOriginIsolated ? Math.min(navigator.hardwareCon
 ort.env.wasm.numThreads = threads;
 ort.env.wasm.wasmPaths = new URL("./", import.meta.url).href;
 
-async function get(address, told) {
+// A file of the page's folder; told is given the share that has come.
+export async function get(address, told) {
     let answer;
     try {
-        answer = await fetch(address);
+        answer = await fetch(new URL(address, import.meta.url));
     } catch {
         throw new Error(`${address} cannot be loaded: is the server of this page still there?`);
     }

@@ -2,7 +2,7 @@
 // The estimate, beside the page so that it stays responsive: every message is a call {id, name, given}, answered by
 // {id, result} or {id, error}, and before that by any number of {id, told}.
 import { Engine, STOPPED } from "./engine.js";
-import { Networks, threads } from "./networks.js";
+import { Networks, get, threads } from "./networks.js";
 
 const MODELS = ["merlin-any", "merlin-point"];
 const MOST_SIDE = 2048; // of a photograph; larger ones are reduced
@@ -41,7 +41,7 @@ async function mask_picture(width, height) {
 
 const calls = {
     async start() {
-        engine = await Engine.load("merlin.wasm");
+        engine = await Engine.start(await get("merlin.wasm"));
         const values = await Networks.list(MODELS);
         for (const value of values) engine.demand("page_network", ...value);
         engine.demand("page_open", ...MODELS);

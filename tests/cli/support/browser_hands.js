@@ -33,3 +33,36 @@ async function file(name) {
     for (const byte of bytes) text += String.fromCharCode(byte);
     return btoa(text);
 }
+
+const choose = (id, is) => { if (get(id).checked !== is) get(id).click(); };
+
+// A photograph as the page takes it, in base64: a picture of this result on grey, turned by its orientation as a JPEG.
+async function jpeg_of(name, width, height) {
+    const context = new OffscreenCanvas(width, height).getContext("2d");
+    context.fillStyle = "#6b6b66";
+    context.fillRect(0, 0, width, height);
+    context.drawImage(await createImageBitmap(await (await fetch(document.querySelector(`.files a[download="${name}"]`).href)).blob()), 60, 40, 400, 400);
+    const bytes = new Uint8Array(await (await context.canvas.convertToBlob({ type: "image/jpeg", quality: 0.95 })).arrayBuffer());
+    return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""));
+}
+
+// Opens the mask's editor and paints a line, from one place to another in shares of the picture.
+async function painted(tool, from, to) {
+    const canvas = get("mask-picture"), point = (kind, [x, y]) => {
+        const box = canvas.getBoundingClientRect();
+        canvas.dispatchEvent(new PointerEvent(kind, { bubbles: true, pointerId: 1, buttons: 1, clientX: box.left + x * box.width, clientY: box.top + y * box.height }));
+    };
+    Element.prototype.setPointerCapture = () => {}; // made events have no pointer that could be captured
+    get("correct").click();
+    await until(() => get("mask").open && !canvas.hidden);
+    document.querySelector(`input[name=tool][value=${tool}]`).click();
+    point("pointerdown", from);
+    point("pointermove", to);
+    point("pointerup", to);
+    get("mask-done").click();
+    await until(() => !get("mask").open && !get("object").textContent.startsWith("The object"));
+    return get("object").textContent;
+}
+
+const nameless = () => [...document.querySelectorAll("button, select, input, canvas, a, iframe, progress")].filter((one) =>
+    !(one.getAttribute("aria-label") || one.title || one.labels?.[0]?.textContent || one.textContent || "").trim()).map((one) => one.id || one.tagName).join(" ");

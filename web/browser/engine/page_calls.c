@@ -251,6 +251,7 @@ int page_write(const char *name)
     if (s == OK) s = map_write_depths("depth.png", &m->depth, &m->mask);
     if (s == OK) s = img_write_png("mask.png", &m->mask, IMG_LINEAR8);
     if (s == OK) s = img_write_png("reconstruction.png", &m->reconstruction, IMG_SRGB8);
+    if (s == OK) s = maps_write_exr(m, "maps.exr");
     if (s == OK) s = write_report();
     if (s == OK) s = merlin_view_write(m, &view, "viewer.html");
     return (int)s;
