@@ -11,7 +11,7 @@ const DIAGONAL = Math.hypot(36, 24); // mm, of the frame for which EXIF tells th
 const VIEWS = 4;
 
 const estimator = new Estimator();
-let shot = null; // the photograph: {file, found, painted}
+let shot = null; // the photograph: {file, found, painted, masked}
 let addresses = [];
 
 function complain(words) {
@@ -21,13 +21,12 @@ function complain(words) {
 
 // ---- photograph and mask ----
 
-async function opacity_of(mask, width, height) {
+// A veil over what is not the object, as the mask's editor has it.
+function veil_of(mask, width, height) {
     const context = new OffscreenCanvas(width, height).getContext("2d");
     context.drawImage(mask, 0, 0);
     const pixels = context.getImageData(0, 0, width, height);
-    for (let i = 0; i < pixels.data.length; i += 4) pixels.data[i + 3] = 255 - pixels.data[i];
-    for (let i = 0; i < pixels.data.length; i += 4) pixels.data.set([140, 31, 95], i);
-    for (let i = 3; i < pixels.data.length; i += 4) pixels.data[i] *= 0.69;
+    for (let i = 0; i < pixels.data.length; i += 4) pixels.data.set([140, 31, 95, 0.69 * (255 - pixels.data[i])], i);
     context.putImageData(pixels, 0, 0);
     return context.canvas;
 }
@@ -37,14 +36,15 @@ async function show_picture() {
     Object.assign(canvas, { width: photo.width, height: photo.height });
     context.drawImage(photo, 0, 0);
     const seen = shot.painted ? await createImageBitmap(shot.painted) : mask;
-    if (seen) context.drawImage(await opacity_of(seen, photo.width, photo.height), 0, 0);
+    if (seen) context.drawImage(veil_of(seen, photo.width, photo.height), 0, 0);
+    shot.masked = Boolean(seen);
     byId("estimate").disabled = !seen;
 }
 
 function words_of_object({ trouble, confidence, reduced, photo }) {
     const size = reduced ? ` The photograph was reduced to ${photo.width} × ${photo.height} pixels.` : "";
     if (shot.painted) return `The mask is yours.${size}`;
-    if (trouble) return `${trouble} Paint the object by “Mask…”.${size}`;
+    if (trouble) return `${trouble.replace(/[;.].*/s, "")}. Paint the object by “Mask…”.${size}`; // the rest is about the command
     return `${confidence < 0.5 ? "The object was found, but not surely: check its mask." : "The object was found."}${size}`;
 }
 
@@ -71,11 +71,11 @@ async function take(file) {
         await show_picture();
         byId("work").hidden = false;
     } catch (error) {
-        byId("work").hidden = !shot;
+        shot = null;
+        byId("work").hidden = true;
         complain(error.message);
     }
     busy(false, "");
-    byId("estimate").disabled ||= !shot;
 }
 
 async function repaint() {
@@ -100,7 +100,8 @@ function busy(is, words) {
     byId("bar").hidden = !is;
     byId("bar").removeAttribute("value");
     byId("stage").textContent = words;
-    for (const id of ["estimate", "correct", "files"]) byId(id).disabled = is;
+    for (const id of ["correct", "files"]) byId(id).disabled = is;
+    byId("estimate").disabled = is || !shot?.masked;
 }
 
 function clear() {
@@ -133,10 +134,10 @@ async function estimate() {
     byId("cancel").focus();
     try {
         const how = { fov: Number(fov) || 0, flash: byId("flash").checked, size, views: VIEWS, name: shot.file.name.replace(/\.[^.]*$/, "") };
-        const { files, seconds } = await estimator.call("estimate", [how], progress_of(size));
-        busy(false, "");
-        show_result(how.name, files, seconds);
-        say(`${shot.file.name} is done`);
+        const result = await estimator.call("estimate", [how], progress_of(size));
+        busy(false, result ? "" : "Cancelled");
+        if (result) show_result(how.name, result.files, result.seconds);
+        say(`${shot.file.name} is ${result ? "done" : "cancelled"}`);
     } catch (error) {
         busy(false, "");
         complain(error.message);
@@ -202,8 +203,7 @@ async function start() {
     try {
         if (typeof WebAssembly !== "object") throw new Error("This browser has no WebAssembly, by which this page computes: use another, or allow it.");
         if (typeof OffscreenCanvas === "undefined") throw new Error("This browser is too old for this page: it knows no OffscreenCanvas.");
-        if (location.protocol === "file:") throw new Error("Browsers do not run this page from the disk: serve its folder, for example by “python3 -m http.server”.");
-        await estimator.call("start");
+        byId("version").textContent = `merlin ${(await estimator.call("start")).version}`;
         byId("files").disabled = false;
     } catch (error) {
         complain(error.message);

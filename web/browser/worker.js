@@ -45,7 +45,7 @@ const calls = {
         const values = await Networks.list(MODELS);
         for (const value of values) engine.demand("page_network", ...value);
         engine.demand("page_open", ...MODELS);
-        return { threads };
+        return { threads, version: engine.text_at(engine.call("page_version")) };
     },
 
     // Takes a photograph and finds its object: {photo, mask, focal, reduced, confidence, trouble}.
@@ -66,14 +66,14 @@ const calls = {
         engine.demand("page_set_mask", cover);
     },
 
-    // how: {fov, flash, size, views, name}. Gives the files by name.
+    // how: {fov, flash, size, views, name}. Gives the files by name and the seconds; null if it was cancelled.
     async estimate(told, how) {
         const mine = ++turn, began = performance.now();
         let runs = 0;
         engine.demand("page_begin", how.fov, how.flash ? 1 : 0, how.size, how.views);
         networks.last = null;
         for (;;) {
-            if (mine !== turn) throw new Error("It was cancelled.");
+            if (mine !== turn) return null;
             const status = engine.call("page_step");
             if (!status) break;
             if (status !== STOPPED || !engine.text_at(engine.call("page_run_network"))) throw new Error(engine.sentence());
@@ -83,7 +83,7 @@ const calls = {
         told({ stage: "Writing files" });
         engine.files.clear();
         engine.demand("page_write", how.name);
-        return { files: new Map(engine.files), seconds: (performance.now() - began) / 1000, runs };
+        return { files: new Map(engine.files), seconds: (performance.now() - began) / 1000 };
     },
 
     async cancel() {
@@ -117,7 +117,7 @@ async function answer(told, run) {
 }
 
 function words_of(error) {
-    if (error instanceof RangeError || error instanceof WebAssembly.RuntimeError || /memory|allocat|bad_alloc/i.test(error.message))
+    if (error instanceof RangeError || error instanceof WebAssembly.RuntimeError || /memory|alloc|abort/i.test(error.message))
         return `There is not enough memory in this browser: close other tabs, or choose “Quick”. (${error.message})`;
     return error.message || String(error);
 }

@@ -34,6 +34,23 @@ async function file(name) {
     return btoa(text);
 }
 
+// A picture of one colour as a PNG, in base64.
+async function blank(width, height) {
+    const context = new OffscreenCanvas(width, height).getContext("2d");
+    context.fillStyle = "#777";
+    context.fillRect(0, 0, width, height);
+    const bytes = new Uint8Array(await (await context.canvas.convertToBlob()).arrayBuffer());
+    return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""));
+}
+
+// Begins an estimate and cancels it; gives what the page says.
+async function cancelled() {
+    get("estimate").click();
+    get("cancel").click();
+    await until(() => get("bar").hidden);
+    return trouble() || get("stage").textContent;
+}
+
 const choose = (id, is) => { if (get(id).checked !== is) get(id).click(); };
 
 // A photograph as the page takes it, in base64: a picture of this result on grey, turned by its orientation as a JPEG.

@@ -51,6 +51,11 @@ void page_free(void *memory)
     free(memory);
 }
 
+const char *page_version(void)
+{
+    return merlin_version();
+}
+
 const char *page_error(void)
 {
     return status_message();

@@ -17,7 +17,8 @@ void page_file(const char *name, const void *data, size_t size);
 /* Return memory for the worker's arguments, and free it; NULL without memory. */
 void *page_alloc(size_t size);
 void page_free(void *memory);
-/* Returns the last error's words. */
+/* Return the library's version, and the last error's words. */
+const char *page_version(void);
 const char *page_error(void);
 
 /* Adds an input or output of a network (recorded_networks.h); returns a status, as all that follow do unless they say
