@@ -26,6 +26,7 @@
  *     model.h        weights, opened for use
  *     maps.h         material and shape of an object
  *     estimate.h     from a photograph to maps
+ *     sequences.h    maps of a video's frames that do not flicker
  *     lights.h       lamps, environments, estimated light
  *     relight.h      from maps to new light
  *     stereo.h       from pictures under many lights to a surface
@@ -65,6 +66,7 @@
 #include <merlin/pictures.h>
 #include <merlin/relight.h>
 #include <merlin/rti.h>
+#include <merlin/sequences.h>
 #include <merlin/status.h>
 #include <merlin/stereo.h>
 #include <merlin/surface.h>

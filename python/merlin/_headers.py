@@ -111,6 +111,21 @@ FoundLights = _struct("found_lights", [("lamps", Lamp * 2), ("count", c_int), ("
 
 BY_BRDF, BY_NETWORK, BY_BRDF_UNSHADOWED, BY_BRDF_DIRECT = range(4)
 
+# ---- sequences.h ----
+
+SMOOTH, MOST_SMOOTH = 8, 100
+OBJECT_GIVEN, OBJECT_FOUND, OBJECT_FOLLOWED, OBJECT_LOST = range(4)
+SequenceParams = _struct("sequence_params", [("smooth", c_int), ("apart", c_int)])
+FrameFacts = _struct("frame_facts", [
+    ("number", c_long), ("object", c_int), ("overlap", c_float), ("exposure", floats3), ("shift", c_int * 2),
+    ("cut", c_int), ("kept", c_float)])
+Differences = _struct("differences", [
+    (name, c_double) for name in ("photo", "albedo", "normal", "roughness", "depth", "mask")])
+Flicker = _struct("flicker", [("pairs", c_long), ("before", Differences), ("after", Differences)])
+SequenceFile = _struct("sequence_file", [("number", c_long), ("folder", c_char_p)])
+SequenceFiles = _struct("sequence_files", [
+    ("rate", c_double), ("at", POINTER(SequenceFile)), ("count", c_size_t)])
+
 # ---- stereo.h ----
 
 DISTANT_LIGHTS, NEAR_LIGHTS, UNKNOWN_LIGHTS = range(3)
@@ -260,6 +275,17 @@ FUNCTIONS: Dict[str, Tuple[Any, List[Any]]] = {
     "shot_read": (c_int, [c_char_p, _at(Shot)]),
     "params_default": (Params, []),
     "estimate": (c_int, [_handle, _at(Image), _at(Image), _at(Params), _at(Maps)]),
+    "sequence_new": (c_int, [_handle, _at(Params), _at(SequenceParams), _out]),
+    "sequence_estimate": (c_int, [_handle, _at(Frame), _at(Maps), _at(FrameFacts)]),
+    "sequence_flicker": (None, [_handle, _at(Flicker)]),
+    "sequence_warnings": (None, [_handle, _at(FramesHead), _at(Warnings)]),
+    "sequence_report": (c_int, [_handle, _at(FramesHead), POINTER(c_void_p)]),
+    "sequence_write": (c_int, [_handle, _at(FramesHead), c_char_p]),
+    "sequence_free": (None, [_handle]),
+    "sequence_folder": (c_int, [c_long, c_char_p, c_int]),
+    "sequence_is": (c_int, [c_char_p]),
+    "sequence_read": (c_int, [c_char_p, _at(SequenceFiles)]),
+    "sequence_files_free": (None, [_at(SequenceFiles)]),
     "object_find": (c_int, [_at(Image), _at(Image), _at(Hint), _at(Object)]),
     "object_free": (None, [_at(Object)]),
     "estimate_object": (c_int, [_handle, _at(Image), _at(Object), _at(Params), _at(Maps)]),

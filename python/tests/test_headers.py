@@ -12,7 +12,7 @@ import pytest
 from merlin import _headers as h
 
 # Structures that a program cannot name are looked into where they lie: the field's path in the structure around them.
-OPAQUE = {"model", "environment", "relighter", "capture", "frames", "video"}
+OPAQUE = {"model", "environment", "relighter", "capture", "frames", "video", "sequence"}
 
 
 def headers(source):

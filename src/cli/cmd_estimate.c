@@ -12,8 +12,9 @@
 #include "base/progress.h"
 #include "cli/check_replaced.h"
 #include "cli/commands.h"
+#include "cli/estimate_sequence.h"
+#include "cli/estimate_write.h"
 #include "cli/expect.h"
-#include "cli/mesh_file.h"
 #include "cli/page.h"
 #include "cli/stage_bar.h"
 #include "cli/written.h"
@@ -30,6 +31,7 @@
 static const char help[] =
     "usage: merlin estimate PHOTO... [options]\n"
     "       merlin estimate FOLDER   [options]\n"
+    "       merlin estimate VIDEO | 'frame_%04d.png' | --sequence FOLDER [options]\n"
     "       merlin estimate - -o DIR [options]     (a photograph from standard input)\n\n"
     "Takes the object of a photograph apart: maps.exr with all maps, albedo.png, normal.png (16-bit, (n + 1)/2),\n"
     "roughness.png, depth.png (near is bright), mask.png, reconstruction.png, overview.png and report.json.\n"
@@ -58,6 +60,13 @@ static const char help[] =
     "      --mesh [FILE]    write mesh.glb, too: the object's front with albedo, normals and roughness; or, of one\n"
     "                       photograph, FILE, which ends in .ply, .obj, .glb or .usda and may be given again\n"
     "      --html           write viewer.html, too: a page in which a browser lights the object (merlin view)\n"
+    "      --sequence       the photographs, or those of FOLDER, are the numbered frames of one sequence, as a video's "
+    "are:\n"
+    "                       exposure, crop and maps stay steady, the object is followed; DIR/frame_0001 and so on, "
+    "and\n"
+    "                       sequence.json, which tells the flicker. --mask: the first frame's, or a folder of numbered "
+    "ones\n"
+    "      --smooth N       frames of the moving average, 1 to 100 (default 8); 0: each frame by itself\n"
     "      --share K/N      of several photographs the K-th of N equal shares alone, for as many machines\n"
     "  -r, --resume         of several, those alone whose maps are not there yet, or older than photograph or mask\n"
     "      --json           a report as JSON on standard output, one line a photograph\n"
@@ -67,19 +76,7 @@ static const char help[] =
     "Several photographs: goes on after one that fails, and then exits with 1. What stands beside maps.exr in\n"
     "a FOLDER under the names above is no photograph.\n";
 
-typedef struct request {
-    const char *mask, *output, *model_name;
-    char *weights, *flash_weights; /* files; the second is NULL for none */
-    merlin_params params;
-    photo_share share; /* share of the photographs; with total 0: all */
-    bool mesh, html, flash, resume, json, quiet, help;
-    mesh_names meshes;
-    merlin_model *model;
-    const photo_list *photos;
-    bool *told; /* reports skipped files of folders */
-    stage_bar *bar;
-    const watch *watch; /* progress bar */
-} request;
+typedef estimate_request request;
 
 static status take_standard_input(const request *r, int count, char **photos)
 {
@@ -110,6 +107,8 @@ static status parse(int *argc, char ***argv, request *r)
         {"html", .flag = &r->html},
         {"share", .take = photo_take_share, .into = &r->share},
         {"resume", 'r', .flag = &r->resume},
+        {"sequence", .flag = &r->sequence},
+        {"smooth", .integer = &r->smooth, .low = 0, .high = MERLIN_MOST_SMOOTH},
         {"json", .flag = &r->json},
         {"quiet", 'q', .flag = &r->quiet},
         {"help", 'h', .flag = &r->help},
@@ -119,6 +118,8 @@ static status parse(int *argc, char ***argv, request *r)
     if (s != OK || r->help) return s;
     r->params.flash = r->flash;
     if (*argc == 0) return fail(MERLIN_WRONG_USE, "no photograph given");
+    s = estimate_sequence_check(r, *argc, *argv);
+    if (s != OK || r->sequence) return s;
     if (r->meshes.count && (*argc > 1 || file_is_folder((*argv)[0])))
         return fail(
             MERLIN_WRONG_USE,
@@ -202,13 +203,6 @@ static double lap(double *clock)
     return passed;
 }
 
-/* Files to write besides the maps. */
-typedef struct more_work {
-    const request *request;
-    const photo_job *job;
-    const char *const *inputs;
-} more_work;
-
 static void plan(const request *r, double pixels)
 {
     stage_cost stages[STAGE_BAR_MOST];
@@ -216,52 +210,6 @@ static void plan(const request *r, double pixels)
     stages[count++] = (stage_cost){"writing", expect_maps_written(pixels, r->mesh || r->meshes.count > 0)};
     if (r->html) stages[count - 1].cost += page_cost(pixels);
     stage_bar_plan(r->bar, stages, count);
-}
-
-static status write_meshes(const more_work *w, const merlin_maps *maps, maps_staging *to)
-{
-    const mesh_names *names = &w->request->meshes;
-    char path[PATH_MAX];
-    merlin_mesh mesh;
-    if (!w->request->mesh && !names->count) return OK;
-    status s = merlin_mesh_from_maps(maps, NULL, &mesh);
-    if (s == OK && w->request->mesh) s = merlin_mesh_write(&mesh, staging_path(to->at[0], "mesh.glb", path), NULL);
-    for (int i = 0; i < names->count && s == OK; i++) {
-        mesh_file named = {names->at[i], w->job->output, w->inputs, to->at[0], &mesh};
-        s = mesh_file_stage(&named, &to->at[to->count]);
-        to->count += to->at[to->count] != NULL;
-    }
-    merlin_mesh_free(&mesh);
-    return s;
-}
-
-static status write_more(const more_work *w, const merlin_maps *maps, maps_staging *to)
-{
-    char path[PATH_MAX];
-    status s = write_meshes(w, maps, to);
-    const page_source of = {standard_input_name(w->job->photo), w->job->output, 0};
-    if (s == OK && w->request->html) s = page_write(maps, &of, staging_path(to->at[0], PAGE_FILE, path));
-    return s == OK && cli_interrupted() ? fail(MERLIN_STOPPED, "stopped") : s;
-}
-
-/* Writes the maps and the other files: all or none. last: no photograph follows. */
-static status write_files(const more_work *w, const merlin_maps *maps, bool last, staged_files *written)
-{
-    const request *r = w->request;
-    const merlin_write_params params = {.in_place = 1,
-                                        .last = last,
-                                        .stop = cli_interrupted,
-                                        .progress = r->watch->tell,
-                                        .progress_context = r->watch->context};
-    maps_staging all = {.count = 1};
-    status s = staging_begin(w->job->output, w->inputs, &all.at[0]);
-    if (s != OK) return s;
-    s = merlin_maps_write(r->model, maps, &params, staging_folder(all.at[0]));
-    if (s == OK) s = write_more(w, maps, &all);
-    if (s == OK) return staging_commit_all(all.at, all.count, written);
-    while (all.count > 0)
-        s = staging_abort(all.at[--all.count], s);
-    return s;
 }
 
 /* Processes a photograph in memory, which is empty afterwards, to files. */
@@ -272,7 +220,7 @@ static status process_photo(const request *r, const photo_job *job, photo_taken 
     merlin_maps maps = {0};
     staged_files written = {0};
     const char *const inputs[STAGING_MOST_INPUTS] = {job->photo, job->mask};
-    const more_work more = {r, job, inputs};
+    const estimate_write more = {r, job->photo, job->output, inputs};
     merlin_params params = r->params;
     params.progress = r->watch->tell;
     params.progress_context = r->watch->context;
@@ -281,7 +229,7 @@ static status process_photo(const request *r, const photo_job *job, photo_taken 
     status s = photo_estimate(r->model, taken, &params, &maps);
     if (s != OK) s = fail_in(s, "%s", job->photo);
     lap(&clock);
-    if (s == OK) s = write_files(&more, &maps, last, &written);
+    if (s == OK) s = estimate_write_files(&more, &maps, last, &written);
     laps->write = lap(&clock);
     laps->total = laps->start + laps->model + laps->compile + laps->read + laps->mask + clock - began;
     if (s == OK) s = announce(r, job, &maps, &written, laps);
@@ -371,12 +319,13 @@ static void skip_photos(const request *r, photo_list *photos)
 
 int cmd_estimate(int argc, char **argv)
 {
-    request r = {.params = merlin_params_default()};
+    request r = {.params = merlin_params_default(), .smooth = -1};
     r.params.stop = cli_interrupted;
     status s = parse(&argc, &argv, &r);
     if (s != OK) return cli_refuse("estimate", s);
     if (r.help) return fputs(help, stdout) < 0;
     cli_catch_interrupts();
+    if (r.sequence) return estimate_sequence(&r, argc, argv);
     photo_list photos;
     s = photo_list_make(argv, argc, r.mask, r.output, &photos);
     if (s != OK) return cli_fail("estimate", s);

@@ -16,4 +16,8 @@
  * MERLIN_BAD_INPUT if nothing differs from the background. */
 status find_object(const img *photo, const merlin_hint *hint, img *mask, float *confidence);
 
+/* Finds it again in the next frame: before is its mask there, at the place where it is expected now. *overlap: the
+ * intersection over union of both, at the size of the search. Fails only without memory. */
+status find_object_again(const img *photo, const img *before, img *mask, float *overlap);
+
 #endif

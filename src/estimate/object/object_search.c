@@ -8,6 +8,7 @@
 #include "base/number.h"
 #include "estimate/object/border_distance.h"
 #include "estimate/object/object_quality.h"
+#include "image/resize.h"
 
 enum { WORKING_SIDE = 96, OTSU_BINS = 128, FREE = 0, BACKGROUND = 1, OBJECT = 2 };
 static const float FARTHEST = 1.5f, OTSU_SHARE = 0.35f, LEAST_BARRIER = 0.08f;
@@ -266,6 +267,43 @@ static void choose(object_search *s, const merlin_hint *hint)
         best = score;
         s->best = i;
     }
+}
+
+/* ---- from picture to picture ---- */
+
+/* Expects the object where it was: surely inside and outside, not within a few pixels of its outline. */
+static status find_prior_before(object_search *s, const img *before)
+{
+    enum { MOVES = 3 };
+    static const float MOST = 4;
+    img small = {0};
+    status st = img_resize(before, s->view.width, s->view.height, &small);
+    for (size_t i = 0; st == OK && i < s->view.count; i++)
+        s->start[i] = small.data[i] >= 0.5f;
+    if (st == OK) st = img_box_sums(&small, MOVES);
+    for (size_t i = 0; st == OK && i < s->view.count; i++) {
+        const float within = small.data[i] / ((2 * MOVES + 1) * (2 * MOVES + 1));
+        s->prior[i] = MOST * clamp(2 * within - 1, -1, 1);
+    }
+    img_free(&small);
+    return st;
+}
+
+status object_search_follow(const img *photo, const img *before, object_search *out)
+{
+    *out = (object_search){0};
+    object_ground ground = {.view = &out->view, .tie = OBJECT_UNIT * TIE};
+    status st = search_new(photo, NULL, out);
+    if (st == OK) st = grid_cut_new(&ground.cut, out->view.width, out->view.height);
+    ground.prior = out->prior;
+    ground.away = out->away.data;
+    ground.fixed = out->fixed;
+    if (st == OK) object_view_tie(&out->view, ground.tie, &ground.cut);
+    if (st == OK) st = find_prior_before(out, before);
+    if (st == OK) st = grow(out, &ground, false);
+    grid_cut_free(&ground.cut);
+    if (st != OK) object_search_free(out);
+    return st;
 }
 
 status object_search_run(const img *photo, const merlin_hint *hint, object_search *out)

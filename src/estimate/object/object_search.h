@@ -31,6 +31,9 @@ typedef struct object_search {
 
 /* Runs the search. hint: sound, or NULL. MERLIN_BAD_INPUT if nothing differs from the border. */
 status object_search_run(const img *photo, const merlin_hint *hint, object_search *out);
+/* Grows one candidate, from where the object was in the picture before: 1 channel of the photograph's size. Its quality
+ * lacks the agreement with others. */
+status object_search_follow(const img *photo, const img *before, object_search *out);
 void object_search_free(object_search *s);
 
 /* Makes a candidate's mask in the photograph's size, with an outline that follows the photograph's edges: 1 channel in

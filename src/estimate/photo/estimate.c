@@ -28,6 +28,7 @@ typedef struct work {
     const merlin_params *params;
     img photo, mask;     /* the photograph, whose pixels are released once the crop is taken */
     merlin_image *owned; /* the photograph, if this run must free it; else NULL */
+    estimate_held held;  /* zeros: nothing */
     crop_square crop;
     sight how;
     img crop_photo, crop_mask;
@@ -75,7 +76,8 @@ static status take_object(work *w, merlin_object *object, merlin_maps *maps)
 
 static status find_crop(work *w, merlin_maps *maps)
 {
-    status s = crop_around(&w->mask, &w->crop);
+    w->crop = w->held.crop;
+    status s = w->crop.side ? OK : crop_around(&w->mask, &w->crop);
     maps->crop.x = w->crop.x;
     maps->crop.y = w->crop.y;
     maps->crop.side = w->crop.side;
@@ -145,6 +147,7 @@ static status make_input(work *w, merlin_maps *maps)
     if (s != OK) return s;
     maps->gain =
         w->params->auto_exposure ? exposure_gain(&w->low_photo, &w->low_mask) : exposure_from_ev(w->params->exposure);
+    if (w->held.gain > 0) maps->gain = w->held.gain * powf(maps->gain / w->held.gain, w->held.new_share);
     input_expose(&w->low_photo, maps->gain);
     return OK;
 }
@@ -286,6 +289,14 @@ static status prepare_finer(const merlin_model *model, network *n, work *w, int 
     return s == OK ? lap_compile(model, w, &maps->timing.compile) : s;
 }
 
+/* Chooses between the networks of a pair; name: that of the one that was chosen before, or NULL. */
+static status choose_network(const merlin_model *model, const light_question *asked, const char *name, network **n)
+{
+    if (!name) return light_choice(model->network, model->flash, asked, n);
+    *n = model->flash && strcmp(network_config(model->flash)->name, name) == 0 ? model->flash : model->network;
+    return OK;
+}
+
 static status estimate(merlin_model *model, work *w, merlin_maps *maps)
 {
     network *n = NULL;
@@ -296,7 +307,7 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     status s = make_input(w, maps);
     if (s == OK) s = lap(w, &t->prepare);
     const light_question asked = {&w->low_photo, &w->low_mask, &w->how, w->params->shot.flash};
-    if (s == OK) s = light_choice(model->network, model->flash, &asked, &n);
+    if (s == OK) s = choose_network(model, &asked, w->held.model, &n);
     if (s != OK) return s;
     snprintf(maps->model, sizeof maps->model, "%s", network_config(n)->name);
     s = lap(w, &t->choose);
@@ -327,14 +338,16 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     return s;
 }
 
-/* Estimates a photograph. owned: photo, if it is to be freed; or NULL. */
+/* Estimates a photograph. owned: photo, if it is to be freed; or NULL. held: NULL for nothing. */
 static status estimate_photo(merlin_model *model, const merlin_image *photo, merlin_image *owned, merlin_object *object,
-                             const merlin_params *params, light_cues *cues, merlin_maps *maps)
+                             const merlin_params *params, const estimate_held *held, light_cues *cues,
+                             merlin_maps *maps)
 {
     *maps = (merlin_maps){0};
     merlin_params defaults = merlin_params_default();
     const merlin_params *p = params ? params : &defaults;
     work w = {.params = p, .photo = *photo, .owned = owned, .watch = {p->progress, p->progress_context, p->stop}};
+    if (held) w.held = *held;
     maps->size = network_side(p->size);
     status s = take_object(&w, object, maps);
     if (s == OK) s = params_check(p);
@@ -352,7 +365,13 @@ static status estimate_photo(merlin_model *model, const merlin_image *photo, mer
 status estimate_with_cues(merlin_model *model, merlin_image *photo, merlin_object *object, const merlin_params *params,
                           light_cues *cues, merlin_maps *maps)
 {
-    return estimate_photo(model, photo, photo, object, params, cues, maps);
+    return estimate_photo(model, photo, photo, object, params, NULL, cues, maps);
+}
+
+status estimate_with_held(merlin_model *model, merlin_image *photo, merlin_object *object, const merlin_params *params,
+                          const estimate_held *held, merlin_maps *maps)
+{
+    return estimate_photo(model, photo, photo, object, params, held, NULL, maps);
 }
 
 merlin_status merlin_estimate_object(merlin_model *model, merlin_image *photo, merlin_object *object,
@@ -360,7 +379,7 @@ merlin_status merlin_estimate_object(merlin_model *model, merlin_image *photo, m
 {
     if (maps) *maps = (merlin_maps){0};
     status s = api_needs(__func__, model && photo && object && maps);
-    if (s == OK) return estimate_photo(model, photo, photo, object, params, NULL, maps);
+    if (s == OK) return estimate_photo(model, photo, photo, object, params, NULL, NULL, maps);
     merlin_image_free(photo);
     merlin_object_free(object);
     return s;
@@ -374,7 +393,7 @@ merlin_status merlin_estimate(merlin_model *model, const merlin_image *photo, co
     status s = api_needs(__func__, model && photo && maps);
     if (s == OK) s = merlin_object_find(photo, mask, params ? &params->hint : NULL, &object);
     if (s == OK && params && params->stop && params->stop()) s = fail(MERLIN_STOPPED, "stopped");
-    if (s == OK) s = estimate_photo(model, photo, NULL, &object, params, NULL, maps);
+    if (s == OK) s = estimate_photo(model, photo, NULL, &object, params, NULL, NULL, maps);
     merlin_object_free(&object);
     return s;
 }

@@ -4,10 +4,23 @@
 #define MERLIN_ESTIMATE_PHOTO_ESTIMATE_H
 
 #include "estimate/photo/light_cues.h"
+#include "estimate/surface/crop.h"
 #include "merlin/estimate.h"
 
 /* Estimates as merlin_estimate_object does, and returns the cues from which the warning about the light is derived. */
 status estimate_with_cues(merlin_model *model, merlin_image *photo, merlin_object *object, const merlin_params *params,
                           light_cues *cues, merlin_maps *maps);
+
+/* What frames of a sequence have in common, instead of what each would get on its own. */
+typedef struct estimate_held {
+    crop_square crop;  /* holds the object; with side 0 it is chosen */
+    const char *model; /* name of the network, of a pair; NULL: chosen */
+    float gain;        /* that of the last frame; 0: none */
+    float new_share;   /* share of this frame's own gain in the mean with that */
+} estimate_held;
+
+/* Estimates as merlin_estimate_object does, with what is held. */
+status estimate_with_held(merlin_model *model, merlin_image *photo, merlin_object *object, const merlin_params *params,
+                          const estimate_held *held, merlin_maps *maps);
 
 #endif

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: MIT */
+/* What merlin estimate was asked for, and the files of one photograph or frame. */
+#ifndef MERLIN_CLI_ESTIMATE_WRITE_H
+#define MERLIN_CLI_ESTIMATE_WRITE_H
+
+#include <stdbool.h>
+
+#include "base/staging.h"
+#include "base/watch.h"
+#include "cli/mesh_file.h"
+#include "cli/stage_bar.h"
+#include "command/photos.h"
+
+typedef struct estimate_request {
+    const char *mask, *output, *model_name;
+    char *weights, *flash_weights; /* files; the second is NULL for none */
+    merlin_params params;
+    photo_share share; /* share of the photographs; with total 0: all */
+    bool mesh, html, flash, resume, json, quiet, help;
+    bool sequence; /* the photographs are frames of one sequence */
+    int smooth;    /* frames of its moving average; 0: each by itself; -1: not given */
+    mesh_names meshes;
+    merlin_model *model;
+    const photo_list *photos;
+    bool *told; /* reports skipped files of folders */
+    stage_bar *bar;
+    const watch *watch; /* progress bar */
+} estimate_request;
+
+/* Maps to write: their photograph, the folder, and inputs as in staging_begin. */
+typedef struct estimate_write {
+    const estimate_request *request;
+    const char *photo, *output;
+    const char *const *inputs;
+} estimate_write;
+
+/* Writes the maps and the other files that were asked for: all or none. last: no photograph follows. */
+status estimate_write_files(const estimate_write *w, const merlin_maps *maps, bool last, staged_files *written);
+
+#endif
