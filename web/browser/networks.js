@@ -30,6 +30,7 @@ export async function get(address, told) {
 
 export class Networks {
     sessions = new Map(); // by "merlin-any/maps"
+    files = new Map(); // those that are being fetched: {bytes, share, told}
     last = null; // the last run, which the choice of a model and its first view share
 
     // What goes in and comes out, by networks.json of the models of the page: [network, name, channels, reduction, is input].
@@ -45,11 +46,28 @@ export class Networks {
         return values;
     }
 
+    // Fetches a network's file, unless that has begun or is done.
+    fetch(network) {
+        if (this.sessions.has(network) || this.files.has(network)) return this.files.get(network);
+        const file = { told: null };
+        file.bytes = get(`models/${network}.onnx`, (share) => file.told?.(share));
+        file.bytes.catch(() => this.files.delete(network)); // the next to ask tries again
+        this.files.set(network, file);
+        return file;
+    }
+
+    // Fetches them one after the other, so that an estimate need not wait, and none needs the server any more.
+    async fetch_all(networks) {
+        for (const network of networks) await this.fetch(network)?.bytes.catch(() => {});
+    }
+
     // Loads a network, and tells which share of it is there.
     async session(network, told) {
         if (!this.sessions.has(network)) {
-            const bytes = await get(`models/${network}.onnx`, told);
-            this.sessions.set(network, await ort.InferenceSession.create(bytes, { executionProviders: ["wasm"], graphOptimizationLevel: "all" }));
+            const file = this.fetch(network);
+            file.told = told;
+            this.sessions.set(network, await ort.InferenceSession.create(await file.bytes, { executionProviders: ["wasm"], graphOptimizationLevel: "all" }));
+            this.files.delete(network);
         }
         return this.sessions.get(network);
     }

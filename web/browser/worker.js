@@ -4,7 +4,8 @@
 import { Engine, STOPPED } from "./engine.js";
 import { Networks, get, threads } from "./networks.js";
 
-const MODELS = ["merlin-any", "merlin-point"];
+const MODELS = ["merlin-any", "merlin-point"]; // the second is for flashes
+const NETWORKS = ["merlin-any/maps", "merlin-point/maps", "merlin-point/bounces"];
 const MOST_SIDE = 2048; // of a photograph; larger ones are reduced
 
 const networks = new Networks();
@@ -57,6 +58,7 @@ const calls = {
         if (engine.call("page_find")) found.trouble = engine.sentence();
         else found.confidence = engine.call("page_confidence");
         found.mask = found.trouble ? null : await mask_picture(width, height);
+        networks.fetch_all(NETWORKS);
         return found;
     },
 

@@ -83,3 +83,13 @@ async function painted(tool, from, to) {
 
 const nameless = () => [...document.querySelectorAll("button, select, input, canvas, a, iframe, progress")].filter((one) =>
     !(one.getAttribute("aria-label") || one.title || one.labels?.[0]?.textContent || one.textContent || "").trim()).map((one) => one.id || one.tagName).join(" ");
+
+// Whether this server can be reached as another host, which localhost is to a page of 127.0.0.1.
+const other_host = (by) => by(`http://localhost:${location.port}/index.html`, { mode: "no-cors" }).then(() => "reached", () => "refused");
+
+// fetch in a worker that is started as the page starts its own.
+const in_worker = (address, how) => new Promise((done, failed) => {
+    const program = `fetch(${JSON.stringify(address)}, ${JSON.stringify(how)}).then(() => postMessage("reached"), () => postMessage("refused"));`;
+    const worker = new Worker(URL.createObjectURL(new Blob([program], { type: "text/javascript" })), { type: "module" });
+    worker.onmessage = ({ data }) => (data === "reached" ? done() : failed());
+});
