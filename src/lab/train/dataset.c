@@ -208,7 +208,7 @@ static const uint16_t *get3(const uint16_t *from, float *to)
     return from;
 }
 
-static void clear(const train_view *v)
+static void clear(const train_view *v, int lamps)
 {
     size_t n = (size_t)v->size * (size_t)v->size;
     float *const three[] = {v->albedo, v->normal, v->direct, v->indirect};
@@ -216,7 +216,7 @@ static void clear(const train_view *v)
     for (int i = 0; i < 4; i++)
         memset(three[i], 0, 3 * n * sizeof(float));
     if (v->env) memset(v->env, 0, 3 * n * sizeof(float));
-    if (v->lamps) memset(v->lamps, 0, TRAIN_LAMPS * TRAIN_LAMP_VALUES * n * sizeof(float));
+    if (v->lamps) memset(v->lamps, 0, (size_t)lamps * TRAIN_LAMP_VALUES * n * sizeof(float));
     for (int i = 0; i < 3; i++)
         memset(one[i], 0, n * sizeof(float));
 }
@@ -253,7 +253,7 @@ static void unpack_lights(const packed *p, int orientation, train_view *v)
 static void unpack(const packed *p, int orientation, train_view *v)
 {
     const size_t pixels = (size_t)v->size * (size_t)v->size;
-    clear(v);
+    clear(v, p->lamp_count);
     unpack_lights(p, orientation, v);
     const uint16_t *place = p->data, *value = p->data + 2 * (size_t)p->count;
     for (uint32_t k = 0; k < p->count; k++, place += 2) {

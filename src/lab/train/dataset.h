@@ -27,7 +27,8 @@ typedef struct train_lamp {
     bool distant;
 } train_lamp;
 
-enum { TRAIN_LAMPS = 4, TRAIN_LAMP_VALUES = 4 };
+/* Lamps of a sample that are read, and values of each at a pixel. */
+enum { TRAIN_LAMPS = 16, TRAIN_LAMP_VALUES = 4 };
 
 /* Positions of one sample in the batch, each size × size × channels floats, channels last. */
 typedef struct train_view {

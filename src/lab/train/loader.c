@@ -167,6 +167,14 @@ static shared draw_shared(const train_loader *l, rng *r)
     return (shared){target, l->validation ? 0 : rng_below(r, ORIENTATIONS)};
 }
 
+/* Moves a picture against the object's first one. */
+static void move_hand(const train_loader *l, const item *it, train_mixture *mixture)
+{
+    rng steady = rng_at(seed_of(l), 2 * it->first, TRAIN_STREAM_HAND);
+    rng r = rng_at(seed_of(l), 2 * it->presentation + 1, TRAIN_STREAM_HAND);
+    train_mixture_move(l->source.config->size, &steady, &r, mixture);
+}
+
 /* Prepares a sample under any light. Validation uses all kinds of mixtures, too, by a perfect camera with exposure and
  * white balance. */
 static status fill_any(train_loader *l, item *it)
@@ -183,6 +191,7 @@ static status fill_any(train_loader *l, item *it)
     if (s != OK) return s;
     train_mixture mixture;
     train_mixture_draw(&it->view, &light, &lens, &mixture);
+    if (it->presentation != it->first && !l->validation) move_hand(l, it, &mixture);
     if (!l->validation) train_camera_add_response(&light, &lens);
     return train_prepare_any(&it->view, &mixture, &lens, common.target, &r);
 }

@@ -279,10 +279,49 @@ static void put_relief(const train_view *v)
         if (v->mask[i] > 0) v->depth[i] = 1 + (v->depth[i] - 1) * scale;
 }
 
+/* Shift of a picture of SHIFT_SIZE pixels, at most. */
+static const float SHIFT = 2, SHIFT_SIZE = 256;
+
+void train_mixture_move(int size, rng *steady, rng *r, train_mixture *out)
+{
+    const float most = rng_uniform(steady) < 1.0f / 3 ? 0 : SHIFT * (float)size / SHIFT_SIZE;
+    for (int k = 0; k < 2; k++)
+        out->shift[k] = most * rng_range(r, -1, 1);
+}
+
+/* Returns a picture's value between pixels; zero outside the frame. */
+static vec3 value_at(const float *picture, int size, float x, float y)
+{
+    const float left = floorf(x), top = floorf(y);
+    vec3 sum = {0, 0, 0};
+    for (int k = 0; k < 4; k++) {
+        const int column = (int)left + k % 2, row = (int)top + k / 2;
+        if (column < 0 || column >= size || row < 0 || row >= size) continue;
+        const float across = k % 2 ? x - left : 1 - (x - left), down = k / 2 ? y - top : 1 - (y - top);
+        const float *pixel = picture + 3 * ((size_t)row * (size_t)size + (size_t)column);
+        sum = vec3_add(sum, vec3_scale(vec3_of(pixel), across * down));
+    }
+    return sum;
+}
+
+/* Shifts the photograph against mask and maps. */
+static void shift_photo(const train_view *v, const float shift[2])
+{
+    if (shift[0] == 0 && shift[1] == 0) return;
+    const size_t pixels = (size_t)v->size * (size_t)v->size;
+    float *held = v->reconstruction; /* which is computed later */
+    memcpy(held, v->photo, 3 * pixels * sizeof *held);
+    for (size_t i = 0; i < pixels; i++) {
+        const float x = (float)(i % (size_t)v->size), y = (float)(i / (size_t)v->size);
+        vec3_put(value_at(held, v->size, x - shift[0], y - shift[1]), v->photo + 3 * i);
+    }
+}
+
 status train_prepare_any(const train_view *v, const train_mixture *m, const train_camera *lens, vec3 target, rng *noise)
 {
     for (size_t i = 0; i < (size_t)v->size * (size_t)v->size; i++)
         vec3_put(mixed_at(v, m, i), v->photo + 3 * i);
+    shift_photo(v, m->shift);
     status s = train_photograph(v, true, lens, noise);
     if (s != OK) return s;
     put_lights(v, m, lens);

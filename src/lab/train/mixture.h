@@ -22,11 +22,16 @@ typedef struct train_mixture {
     int strongest;                       /* index of the strongest lamp, or -1 */
     float presence;                      /* of that lamp, rising from 0 to 1 where it makes a sixth of the light */
     bool lens_known, told_flash;         /* what the network is told */
+    float shift[2];                      /* of the picture to the right and downwards, pixels */
 } train_mixture;
 
 /* Chooses a mixture. lens: as set by train_camera_draw; its gain becomes that of the exposure and white balance which a
  * camera chooses. */
 void train_mixture_draw(const train_view *v, rng *r, train_camera *lens, train_mixture *out);
+
+/* Chooses how far the hand that holds the camera has moved since the object's first picture. steady: a generator that
+ * all its pictures share, as a third of all cameras stand on something; r: the picture's own. */
+void train_mixture_move(int size, rng *steady, rng *r, train_mixture *out);
 
 /* Prepares a view with lamps as train_prepare does, except that the photograph is lit by the mixture. Direct, indirect
  * and relit images are those of flash and target alone; depth becomes relief (nn_render). MERLIN_NO_MEMORY. */

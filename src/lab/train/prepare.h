@@ -19,7 +19,8 @@ enum {
     TRAIN_STREAM_MOTION = 105,
     TRAIN_STREAM_FAULTS = 106,
     TRAIN_STREAM_MIXTURE = 107,
-    TRAIN_STREAM_PICTURES = 108
+    TRAIN_STREAM_PICTURES = 108,
+    TRAIN_STREAM_HAND = 109
 };
 
 /* The light of a presentation, apart from the flash. */

@@ -20,7 +20,7 @@
 
 #include <cmocka.h>
 
-enum { SIZE = 64, PIXELS = SIZE * SIZE, SAMPLES = 4, FLOATS = 60 * PIXELS };
+enum { SIZE = 64, PIXELS = SIZE * SIZE, SAMPLES = 4, FLOATS = 108 * PIXELS };
 
 typedef struct fixture {
     char *folder;
@@ -54,7 +54,7 @@ static void place(fixture *f)
         {&v->visibility, PIXELS},
         {&v->sight, 4 * PIXELS},
         {&v->visibility_weight, PIXELS},
-        {&v->lamps, 16 * PIXELS},
+        {&v->lamps, TRAIN_LAMPS * TRAIN_LAMP_VALUES * PIXELS},
         {&v->sh, 27},
         {&v->light, 3},
         {&v->lens_values, 3},
@@ -304,9 +304,47 @@ static void samples_without_lamps_are_refused(void **state)
     scratch_remove(folder);
 }
 
+/* A shift by whole pixels moves the photograph, and nothing else. */
+static void a_hand_moves_the_photograph_and_not_the_maps(void **state)
+{
+    fixture *f = *state;
+    train_view *v = &f->view;
+    float *steady = malloc(3 * PIXELS * sizeof *steady);
+    for (int moved = 0; moved < 2; moved++) {
+        train_camera lens = train_camera_perfect();
+        lens.white = 1000;
+        assert_int_equal(train_dataset_get(f->data, 1, 0, v), OK);
+        const train_mixture m = {.flash = {1, 1, 1}, .strongest = -1, .shift = {moved ? 2.0f : 0, moved ? -1.0f : 0}};
+        prepare(f, &m, &lens);
+        if (!moved) memcpy(steady, v->photo, 3 * PIXELS * sizeof *steady);
+    }
+    for (int y = 0; y < SIZE - 1; y++)
+        for (int x = 2; x < SIZE; x++)
+            assert_float_equal(v->photo[3 * (y * SIZE + x)], steady[3 * ((y + 1) * SIZE + x - 2)], 1e-6f);
+    free(steady);
+}
+
+static void a_third_of_the_hands_is_steady(void **state)
+{
+    (void)state;
+    int still = 0;
+    float most = 0;
+    for (uint64_t i = 0; i < 300; i++) {
+        rng steady = rng_at(1, i, 0), r = rng_at(1, i, 1);
+        train_mixture m = {.strongest = -1};
+        train_mixture_move(128, &steady, &r, &m);
+        still += m.shift[0] == 0 && m.shift[1] == 0;
+        most = fmaxf(most, fmaxf(fabsf(m.shift[0]), fabsf(m.shift[1])));
+    }
+    assert_true(still > 70 && still < 130);
+    assert_true(most > 0.9f && most <= 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_hand_moves_the_photograph_and_not_the_maps),
+        cmocka_unit_test(a_third_of_the_hands_is_steady),
         cmocka_unit_test(a_photograph_is_the_sum_of_its_lights),
         cmocka_unit_test(the_truth_about_a_lamp_makes_the_photograph),
         cmocka_unit_test(kinds_come_as_often_as_they_should),
