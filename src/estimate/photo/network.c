@@ -146,11 +146,12 @@ static const nn_program *largest(const network *n)
     return found;
 }
 
-status network_compile(network *n, model_part part, const char *const *outputs, int size, compiled *c)
+static status compile(network *n, model_part part, const char *const *outputs, int size, int pictures, compiled *c)
 {
-    if (c->program && c->size == size && c->outputs == outputs) return OK;
+    if (c->program && c->size == size && c->pictures == pictures && c->outputs == outputs) return OK;
     compiled_free(c);
-    nn_options options = {.batch = 1,
+    nn_options options = {.batch = pictures,
+                          .group = pictures,
                           .height = size,
                           .width = size,
                           .type = n->type,
@@ -165,8 +166,18 @@ status network_compile(network *n, model_part part, const char *const *outputs, 
     if (s != OK)
         compiled_free(c);
     else
-        c->size = size, c->outputs = outputs;
+        c->size = size, c->pictures = pictures, c->outputs = outputs;
     return s;
+}
+
+status network_compile(network *n, model_part part, const char *const *outputs, int size, compiled *c)
+{
+    return compile(n, part, outputs, size, 1, c);
+}
+
+status network_compile_several(network *n, const char *const *outputs, int size, int pictures, compiled *c)
+{
+    return compile(n, MODEL_MAPS, outputs, size, pictures, c);
 }
 
 status network_prepare(network *n, int size, int views)
@@ -266,17 +277,22 @@ static void take_environment(nn_program *p, float sh[9][3])
         memset(sh, 0, 9 * sizeof *sh);
 }
 
+status network_take_estimation(nn_program *p, int size, network_estimation *out)
+{
+    status s = take_maps(p, size, &out->maps);
+    if (s == OK) take_environment(p, out->environment);
+    const float *lights = nn_output_data(p, "lights");
+    if (s != OK || !lights) return s;
+    memcpy(out->lights, lights, sizeof out->lights);
+    return network_take(p, "visibility", size, 1, 1, 0, &out->visibility);
+}
+
 /* Runs the network on the photograph in one orientation; the result has that orientation, too. */
 static status estimate_view(network *n, const network_subject *at, int view, const char *const *outputs,
                             network_estimation *out)
 {
     status s = network_run_view(n, at, view, outputs, &n->maps);
-    if (s == OK) s = take_maps(n->maps.program, at->photo->width, &out->maps);
-    if (s == OK) take_environment(n->maps.program, out->environment);
-    const float *lights = nn_output_data(n->maps.program, "lights");
-    if (s != OK || !lights) return s;
-    memcpy(out->lights, lights, sizeof out->lights);
-    return network_take(n->maps.program, "visibility", at->photo->width, 1, 1, 0, &out->visibility);
+    return s == OK ? network_take_estimation(n->maps.program, at->photo->width, out) : s;
 }
 
 static status estimate_single(network *n, const network_subject *at, network_estimation *out)
@@ -308,7 +324,7 @@ static camera_lens lens_of(const sight *how)
     return how ? how->lens : (camera_lens){.fov = 0};
 }
 
-static status finish(const network *n, surface *maps)
+status network_finish(const network *n, surface *maps)
 {
     sight_take_relief(maps->lens, &maps->mask, &maps->depth);
     if (n->config.lighting != MODEL_LIGHT_ANY) sight_turn_normals(maps->lens, &maps->mask, &maps->normal);
@@ -344,7 +360,7 @@ status network_estimate(network *n, const img *photo, const img *mask, const sig
                         network_estimation *out)
 {
     status s = network_see(n, photo, mask, how, views, stop, out);
-    if (s == OK) s = finish(n, &out->maps);
+    if (s == OK) s = network_finish(n, &out->maps);
     if (s != OK) network_estimation_free(out);
     return s;
 }

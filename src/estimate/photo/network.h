@@ -67,6 +67,11 @@ status network_see(network *n, const img *photo, const img *mask, const sight *h
 /* Estimates only the light of the photograph, as network_estimate's first view does: MERLIN_WRONG_USE unless it is a
  * model of any light. */
 status network_lights(network *n, const img *photo, const img *mask, const sight *how, float lights[MODEL_LIGHTS]);
+/* Estimates the maps of an object from several photographs that one camera made of it from one place, each under
+ * another light: photos, `count` of them, up to NN_LARGEST_GROUP, one exposure for each. lights (may be NULL) receives
+ * each photograph's; out has those of the first. MERLIN_WRONG_USE unless the model takes several. */
+status network_estimate_several(network *n, const img *photos, int count, const img *mask, const sight *how, int views,
+                                int (*stop)(void), float (*lights)[MODEL_LIGHTS], network_estimation *out);
 void network_estimation_free(network_estimation *e);
 /* Estimates only the normals, as network_estimate does, for the detail of a larger picture. */
 status network_normals(network *n, const img *photo, const img *mask, const sight *how, int views, int (*stop)(void),

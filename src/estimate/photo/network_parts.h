@@ -5,6 +5,7 @@
 
 #include <pthread.h>
 
+#include "estimate/surface/estimation.h"
 #include "estimate/surface/sight.h"
 #include "image/image.h"
 #include "model/model.h"
@@ -12,7 +13,7 @@
 typedef struct compiled {
     nn_graph *graph;
     nn_program *program;
-    int size;
+    int size, pictures;
     const char *const *outputs;
 } compiled;
 
@@ -35,6 +36,12 @@ typedef struct network_subject {
 
 /* Compiles a program, unless that is done. outputs: as of nn_options. */
 status network_compile(struct network *n, model_part part, const char *const *outputs, int size, compiled *c);
+/* Compiles one for several pictures of an object (model.h, "several"). */
+status network_compile_several(struct network *n, const char *const *outputs, int size, int pictures, compiled *c);
+/* Reads maps, lights and visibility of a program of MODEL_MAPS; of several pictures, those of the first. */
+status network_take_estimation(nn_program *p, int size, network_estimation *out);
+/* Does what network_estimate does after the network. */
+status network_finish(const struct network *n, surface *maps);
 /* Reads scale·x + shift of an output of size × size pixels. */
 status network_take(nn_program *p, const char *name, int size, int channels, float scale, float shift, img *out);
 /* Runs the network on a photograph, lit by its flash, in one orientation. */

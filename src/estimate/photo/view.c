@@ -30,12 +30,17 @@ static void turn_into(const img *image, int view, float *turned)
                channels * sizeof(float));
 }
 
-void view_put(nn_program *p, size_t slot, int view, const img *photo, const img *mask)
+void view_put_photo(nn_program *p, size_t slot, int view, const img *photo)
 {
     size_t pixels = pixel_count(photo);
     float *image = nn_input_data(p, "image") + 3 * slot * pixels;
     turn_into(photo, view, image);
     model_encode_image(image, image, 3 * pixels);
+}
+
+void view_put(nn_program *p, size_t slot, int view, const img *photo, const img *mask)
+{
+    view_put_photo(p, slot, view, photo);
     view_put_mask(p, slot, view, mask);
 }
 
@@ -59,19 +64,37 @@ void view_put_light(nn_program *p, const model_config *config, size_t slot, int 
     model_encode_sh((const float(*)[3])sh, code + 3);
 }
 
-void view_put_sight(nn_program *p, size_t slot, int view, const sight *how, int size)
+/* Returns the lens of the rotated photograph. */
+static camera_lens lens_in(const sight *how, int view)
 {
     camera_lens lens = how && how->lens.fov > 0 ? how->lens : (camera_lens){.fov = CAMERA_FOV};
     float slant[3] = {lens.slant.right, lens.slant.up, 0};
     orientation_turn(view, slant);
     lens.slant = (camera_slant){slant[0], slant[1]};
-    const camera seen = camera_through(lens, size, size);
+    return lens;
+}
+
+void view_put_known(nn_program *p, size_t slot, int view, const sight *how, int size)
+{
+    const camera seen = camera_through(lens_in(how, view), size, size);
     const bool known = how && how->lens.fov > 0;
-    float *told = nn_input_data(p, "sight"), *values = nn_input_data(p, "lens");
-    model_sight(known ? &seen : NULL, how && how->flash, size, told + slot * MODEL_SIGHT * (size_t)size * (size_t)size);
-    values[3 * slot] = camera_tangent(lens.fov);
-    values[3 * slot + 1] = lens.slant.right;
-    values[3 * slot + 2] = lens.slant.up;
+    float *told = nn_input_data(p, "sight") + slot * MODEL_SIGHT * (size_t)size * (size_t)size;
+    model_sight(known ? &seen : NULL, how && how->flash, size, told);
+}
+
+void view_put_lens(nn_program *p, size_t slot, int view, const sight *how)
+{
+    const camera_lens lens = lens_in(how, view);
+    float *values = nn_input_data(p, "lens") + 3 * slot;
+    values[0] = camera_tangent(lens.fov);
+    values[1] = lens.slant.right;
+    values[2] = lens.slant.up;
+}
+
+void view_put_sight(nn_program *p, size_t slot, int view, const sight *how, int size)
+{
+    view_put_known(p, slot, view, how, size);
+    view_put_lens(p, slot, view, how);
 }
 
 status view_features_take(nn_program *maps, const model_config *config, int size, view_features *out)
@@ -146,19 +169,16 @@ void view_add_normals(img *mean, const img *turned, int view, float weight)
     parallel_blocks(pixel_count(mean), add_normals, &(addition){mean, turned, view, weight});
 }
 
-/* Adds the light of a photograph, estimated by a model of any light. */
-static void add_lights(network_estimation *mean, const network_estimation *turned, int view, float weight)
+void view_add_lights(float mean[MODEL_LIGHTS], const float turned[MODEL_LIGHTS], int view, float weight)
 {
     float lights[MODEL_LIGHTS], sh[9][3];
-    if (!mean->visibility.data) return;
-    memcpy(lights, turned->lights, sizeof lights);
+    memcpy(lights, turned, sizeof lights);
     orientation_turn(orientation_inverse(view), lights + MODEL_LIGHTS_LAMP);
     model_decode_sh(lights + MODEL_LIGHTS_REST, sh);
     orientation_turn_sh(orientation_inverse(view), sh);
     model_encode_sh((const float(*)[3])sh, lights + MODEL_LIGHTS_REST);
     for (int i = 0; i < MODEL_LIGHTS; i++)
-        mean->lights[i] += weight * lights[i];
-    view_add(&mean->visibility, &turned->visibility, view, weight);
+        mean[i] += weight * lights[i];
 }
 
 void view_mean_add(network_estimation *mean, const network_estimation *turned, int view, float weight)
@@ -168,7 +188,10 @@ void view_mean_add(network_estimation *mean, const network_estimation *turned, i
     orientation_turn_sh(orientation_inverse(view), sh);
     for (int i = 0; i < 27; i++)
         mean->environment[i / 3][i % 3] += weight * sh[i / 3][i % 3];
-    add_lights(mean, turned, view, weight);
+    if (mean->visibility.data) {
+        view_add_lights(mean->lights, turned->lights, view, weight);
+        view_add(&mean->visibility, &turned->visibility, view, weight);
+    }
     view_add(&mean->maps.albedo, &turned->maps.albedo, view, weight);
     view_add_normals(&mean->maps.normal, &turned->maps.normal, view, weight);
     view_add(&mean->maps.roughness, &turned->maps.roughness, view, weight);

@@ -21,10 +21,14 @@
  * photograph: the target, or for maps the flash. A model of setting A ignores environments. */
 void view_put(nn_program *p, size_t slot, int view, const img *photo, const img *mask);
 void view_put_mask(nn_program *p, size_t slot, int view, const img *mask);
+void view_put_photo(nn_program *p, size_t slot, int view, const img *photo);
 void view_put_light(nn_program *p, const model_config *config, size_t slot, int view, const illumination *light);
 
-/* Writes what is known about the camera for a model of any light; how may be NULL. */
+/* Writes what is known about the camera for a model of any light; how may be NULL. The second writes only what belongs
+ * to the photograph, the third only what belongs to the object, of which a model of several photographs sees more. */
 void view_put_sight(nn_program *p, size_t slot, int view, const sight *how, int size);
+void view_put_known(nn_program *p, size_t slot, int view, const sight *how, int size);
+void view_put_lens(nn_program *p, size_t slot, int view, const sight *how);
 
 /* Features of a view for the relighting decoder (model_features), which do not depend on the light: read from picture 0
  * of a program of MODEL_MAPS that has run, and written into picture `slot` of one of MODEL_RELIGHT before every run.
@@ -46,5 +50,7 @@ extern const char *const view_outputs[];
 /* Do the same for whole estimations. The mean starts as maps of zeros, size × size: */
 status view_mean_new(const model_config *config, int size, network_estimation *mean);
 void view_mean_add(network_estimation *mean, const network_estimation *turned, int view, float weight);
+/* Adds the lights of a photograph, estimated by a model of any light. */
+void view_add_lights(float mean[MODEL_LIGHTS], const float turned[MODEL_LIGHTS], int view, float weight);
 
 #endif

@@ -17,6 +17,7 @@
 #include <stdio.h>
 
 #include "base/status.h"
+#include "lab/eval/tables/lit_subject.h"
 
 enum { LIGHT_LAMPS = 5 };
 typedef enum light_kind {
@@ -32,13 +33,13 @@ typedef enum light_kind {
 extern const float light_angles[LIGHT_LAMPS - 1];
 
 typedef enum light_figure {
-    LIGHT_ANGLE,       /* of normals, degrees */
-    LIGHT_ALBEDO,      /* mean squared error in [-1, 1] */
-    LIGHT_ALBEDO_FREE, /* the same where the albedo may be as many times as large as suits best */
-    LIGHT_ROUGHNESS,   /* mean squared error in [-1, 1] */
-    LIGHT_RELIEF,      /* root mean square error of depth, its mean apart, in widths of the frame */
-    LIGHT_AS_FLASH,    /* share of the photographs that are seen as lit by a flash alone; models of any light alone */
-    LIGHT_DIRECTION,   /* of the strongest lamp where one is found, degrees; the same */
+    LIGHT_ANGLE = LIT_ANGLE,
+    LIGHT_ALBEDO = LIT_ALBEDO,
+    LIGHT_ALBEDO_FREE = LIT_ALBEDO_FREE,
+    LIGHT_ROUGHNESS = LIT_ROUGHNESS,
+    LIGHT_RELIEF = LIT_RELIEF,
+    LIGHT_AS_FLASH,  /* share of the photographs that are seen as lit by a flash alone; models of any light alone */
+    LIGHT_DIRECTION, /* of the strongest lamp where one is found, degrees; the same */
     LIGHT_FIGURES
 } light_figure;
 

@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT */
+/* Several photographs of an object in one network. */
+#include <string.h>
+
+#include "base/progress.h"
+#include "estimate/photo/network.h"
+#include "estimate/photo/network_parts.h"
+#include "estimate/photo/view.h"
+
+/* Photographs of an object, the same for all views. */
+typedef struct pictures {
+    const img *photos, *mask;
+    int count;
+    const sight *how;
+} pictures;
+
+/* Runs the network on all photographs in one orientation. */
+static status run_view(network *n, const pictures *of, int view)
+{
+    const int size = of->mask->width;
+    status s = network_compile_several(n, view_outputs, size, of->count, &n->maps);
+    if (s != OK) return s;
+    nn_program *p = n->maps.program;
+    for (int i = 0; i < of->count; i++) {
+        view_put_photo(p, (size_t)i, view, &of->photos[i]);
+        view_put_known(p, (size_t)i, view, of->how, size);
+    }
+    view_put_mask(p, 0, view, of->mask);
+    view_put_lens(p, 0, view, of->how);
+    view_put_light(p, &n->config, 0, view, &(illumination){{0, 0, 0}, NULL});
+    return nn_forward(p);
+}
+
+/* Adds what was found in one orientation to the mean. */
+static status add_view(network *n, const pictures *of, int view, float weight, float (*lights)[MODEL_LIGHTS],
+                       network_estimation *mean)
+{
+    network_estimation turned = {0};
+    status s = run_view(n, of, view);
+    if (s == OK) s = network_take_estimation(n->maps.program, of->mask->width, &turned);
+    if (s == OK) view_mean_add(mean, &turned, view, weight);
+    for (int i = 0; s == OK && lights && i < of->count; i++)
+        view_add_lights(lights[i], nn_output_data(n->maps.program, "lights") + MODEL_LIGHTS * i, view, weight);
+    network_estimation_free(&turned);
+    return s;
+}
+
+static status see_all(network *n, const pictures *of, int views, int (*stop)(void), float (*lights)[MODEL_LIGHTS],
+                      network_estimation *out)
+{
+    status s = view_mean_new(&n->config, of->mask->width, out);
+    if (lights) memset(lights, 0, (size_t)of->count * sizeof *lights);
+    for (int view = 0; view < views && s == OK; view++)
+        s = stop && stop() ? fail(MERLIN_STOPPED, "stopped") : add_view(n, of, view, 1.0f / (float)views, lights, out);
+    return s;
+}
+
+status network_estimate_several(network *n, const img *photos, int count, const img *mask, const sight *how, int views,
+                                int (*stop)(void), float (*lights)[MODEL_LIGHTS], network_estimation *out)
+{
+    const pictures of = {photos, mask, count, how};
+    *out = (network_estimation){0};
+    status s = network_check_views(views);
+    if (s == OK && !n->config.several)
+        s = fail(MERLIN_WRONG_USE, "model \"%s\" takes one photograph at a time", n->config.name);
+    if (s == OK && (count < 1 || count > NN_LARGEST_GROUP))
+        s = fail(MERLIN_WRONG_USE, "%d photographs of an object: 1 to %d", count, NN_LARGEST_GROUP);
+    pthread_mutex_lock(&n->lock);
+    if (s == OK) s = see_all(n, &of, views, stop, lights, out);
+    pthread_mutex_unlock(&n->lock);
+    out->maps.lens = how ? how->lens : (camera_lens){.fov = 0};
+    img_free(&out->maps.mask);
+    if (s == OK) s = img_copy(&out->maps.mask, mask);
+    if (s == OK) s = network_finish(n, &out->maps);
+    if (s != OK) network_estimation_free(out);
+    return s;
+}

@@ -1,0 +1,142 @@
+/* SPDX-License-Identifier: MIT */
+#include "lab/eval/tables/lit_subject.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/number.h"
+#include "estimate/surface/exposure.h"
+#include "image/color.h"
+#include "lab/eval/metrics/metrics.h"
+#include "lab/eval/samples/truth.h"
+
+/* The 95th percentile of the object's luminance, as a share of white: what a camera's automatic exposure makes of it.
+ */
+static const float EXPOSED = 0.7f, BRIGHT_SHARE = 0.95f;
+
+status lit_sample_read(const char *path, sample *out)
+{
+    status s = sample_read(path, out);
+    if (s != OK || (out->lamp_count > 0 && out->env.data)) return s;
+    sample_free(out);
+    return fail(MERLIN_BAD_INPUT, "%s was rendered without lamps or without environment: render samples with --lamps",
+                path);
+}
+
+status lit_subject_new(const sample *s, lit_subject *out)
+{
+    *out = (lit_subject){.s = s};
+    status st = eval_binary_mask(&s->mask, &out->mask);
+    if (st == OK) st = eval_truth(s, &out->mask, &out->truth);
+    if (st != OK) lit_subject_free(out);
+    return st;
+}
+
+void lit_subject_free(lit_subject *subject)
+{
+    img_free(&subject->mask);
+    surface_free(&subject->truth);
+}
+
+/* ---- the photograph ---- */
+
+static float mean_luminance(const lit_subject *on, const img *a, const img *b)
+{
+    double sum = 0, count = 1e-6;
+    for (size_t i = 0; i < img_value_count(&on->mask); i++) {
+        if (on->mask.data[i] == 0) continue;
+        sum += (double)(color_luminance(a->data + 3 * i) + (b ? color_luminance(b->data + 3 * i) : 0));
+        count++;
+    }
+    return (float)(sum / count);
+}
+
+static void add(const img *layer, float weight, img *to)
+{
+    for (size_t i = 0; i < img_value_count(to); i++)
+        to->data[i] += weight * layer->data[i];
+}
+
+static status bright_part(const lit_subject *on, const img *photo, float *out)
+{
+    size_t count = 0, pixels = img_value_count(&on->mask);
+    float *values = malloc((pixels + 1) * sizeof *values);
+    if (!values) return fail(MERLIN_NO_MEMORY, "no memory for a photograph's brightness");
+    for (size_t i = 0; i < pixels; i++)
+        if (on->mask.data[i] > 0) values[count++] = color_luminance(photo->data + 3 * i);
+    qsort(values, count, sizeof *values, number_ascending);
+    *out = count ? values[(size_t)(BRIGHT_SHARE * (float)(count - 1))] : 0;
+    free(values);
+    return OK;
+}
+
+static status mix(const lit_subject *on, const lit_mixture *m, img *out)
+{
+    const sample *s = on->s;
+    float flash = mean_luminance(on, &s->direct, &s->indirect), room = mean_luminance(on, &s->env, NULL), main = flash;
+    status st = img_new(out, s->mask.width, s->mask.height, 3);
+    if (st != OK) return st;
+    if (m->flash > 0) add(&s->direct, m->flash, out), add(&s->indirect, m->flash, out);
+    if (m->lamp >= 0) {
+        const sample_lamp *l = &s->lamps[m->lamp];
+        add(&l->direct, 1, out), add(&l->indirect, 1, out);
+        main = mean_luminance(on, &l->direct, &l->indirect);
+    }
+    if (m->room > 0) add(&s->env, room > 0 ? m->room * main / room : 0, out);
+    return OK;
+}
+
+status lit_radiance(const lit_subject *on, const lit_mixture *m, img *out, float *white)
+{
+    float bright = 0;
+    status s = mix(on, m, out);
+    if (s == OK) s = bright_part(on, out, &bright);
+    *white = EXPOSURE_WHITE;
+    if (m->room > 0 || m->lamp >= 0) *white = bright > 0 ? bright / EXPOSED : 1;
+    if (s != OK) img_free(out);
+    return s;
+}
+
+/* ---- figures ---- */
+
+static double albedo_free(const img *albedo, const lit_subject *on)
+{
+    double both = 0, own = 0, sum = 0, count = 1e-9;
+    const float *a = albedo->data, *b = on->truth.albedo.data;
+    for (size_t i = 0; i < img_value_count(albedo); i++) {
+        if (on->mask.data[i / 3] == 0) continue;
+        both += (double)a[i] * (double)b[i];
+        own += (double)a[i] * (double)a[i];
+    }
+    const double scale = own > 0 ? both / own : 1;
+    for (size_t i = 0; i < img_value_count(albedo); i++) {
+        if (on->mask.data[i / 3] == 0) continue;
+        double e = scale * (double)a[i] - (double)b[i];
+        sum += e * e;
+        count++;
+    }
+    return EVAL_UNIT * sum / count;
+}
+
+static double relief_error(const img *depth, const lit_subject *on)
+{
+    double sum = 0, squares = 0, count = 1e-9;
+    for (size_t i = 0; i < img_value_count(depth); i++) {
+        if (on->mask.data[i] == 0) continue;
+        double e = (double)(depth->data[i] - on->truth.depth.data[i]);
+        sum += e;
+        squares += e * e;
+        count++;
+    }
+    double mean = sum / count, width = 2 * (double)camera_tangent(on->s->fov);
+    return sqrt(fmax(squares / count - mean * mean, 0)) / width;
+}
+
+void lit_figures_add(const surface *maps, const lit_subject *on, double sum[LIT_FIGURES])
+{
+    sum[LIT_ANGLE] += eval_angle(&maps->normal, &on->truth.normal, &on->mask);
+    sum[LIT_ALBEDO] += EVAL_UNIT * eval_mse(&maps->albedo, &on->truth.albedo, &on->mask);
+    sum[LIT_ALBEDO_FREE] += albedo_free(&maps->albedo, on);
+    sum[LIT_ROUGHNESS] += EVAL_UNIT * eval_mse(&maps->roughness, &on->truth.roughness, &on->mask);
+    sum[LIT_RELIEF] += relief_error(&maps->depth, on);
+}
