@@ -12,7 +12,7 @@ cd "$scratch" || exit 1
 # PROGRAM COMMAND
 commands=("merlin estimate" "merlin relight" "merlin view" "merlin export" "merlin stereo" "merlin stereo calibrate" "merlin serve" "merlin info")
 [[ -z ${MERLIN_LAB:-} ]] || for command in render train eval "eval stereo" "eval solvers" "eval detail" "eval doubts" \
-    "eval masks" "eval lights" "eval pictures" "eval photos" export bench; do commands+=("merlin-lab $command"); done
+    "eval masks" "eval lights" "eval several" "eval pictures" "eval photos" export bench; do commands+=("merlin-lab $command"); done
 
 manual() { sed 's/\\-/-/g; s/\\f.//g' "$MERLIN_SOURCE_DIR/man/$1.1"; } # PROGRAM
 in_source() { # PROGRAM COMMAND: the names in its table, and those of the table that all have

@@ -25,5 +25,7 @@ int eval_masks(int argc, char **argv);
 int eval_pictures(int argc, char **argv);
 /* Runs merlin-lab eval lights; argv[0] is "lights". Returns the exit status. */
 int eval_lights(int argc, char **argv);
+/* Runs merlin-lab eval several; argv[0] is "several". Returns the exit status. */
+int eval_several(int argc, char **argv);
 
 #endif

@@ -1,20 +1,25 @@
 /* SPDX-License-Identifier: MIT */
-/* tiny_model FILE: weights of a tiny network of both decoders, as random as training begins with. */
+/* tiny_model FILE [several]: weights of a tiny network of both decoders, or of several photographs, as random as
+ * training begins with. */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "model/model.h"
 #include "model/model_export.h"
 
 int main(int argc, char **argv)
 {
-    if (argc != 2) return 2;
+    const bool several = argc == 3 && strcmp(argv[2], "several") == 0;
+    if (argc != 2 && !several) return 2;
     const model_config config = {.name = "tiny",
                                  .input_global = true,
                                  .material_decoders = 1,
-                                 .feature_sharing = true,
+                                 .feature_sharing = !several,
                                  .gated_attention = true,
-                                 .relight = MODEL_RELIGHT_NETWORK,
+                                 .relight = several ? MODEL_RELIGHT_BRDF : MODEL_RELIGHT_NETWORK,
+                                 .lighting = several ? MODEL_LIGHT_ANY : MODEL_LIGHT_POINT,
+                                 .several = several,
                                  .global_illumination = true,
                                  .widths = {8, 8, 8, 8, 8},
                                  .gi_widths = {8, 8, 8, 8, 8}};

@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: MIT */
+#include "lab/eval/tables/several_table.h"
+
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/json/json_put.h"
+#include "base/number.h"
+#include "base/progress.h"
+#include "base/text/report.h"
+#include "estimate/photo/input.h"
+#include "estimate/photo/network.h"
+#include "estimate/photo/view.h"
+#include "estimate/surface/exposure.h"
+#include "lab/eval/samples/each_sample.h"
+
+enum { MOST = 1 << (SEVERAL_ROWS - 1) };
+
+typedef struct run {
+    const several_options *options;
+    network *network;
+    several_table *table;
+} run;
+
+/* Photographs of a sample as the network takes them. */
+typedef struct photographs {
+    img photo[MOST], mask;
+    int count;
+    sight how;
+} photographs;
+
+static void photographs_free(photographs *p)
+{
+    for (int i = 0; i < p->count; i++)
+        img_free(&p->photo[i]);
+    img_free(&p->mask);
+}
+
+/* Takes a photograph under one lamp, which exposes it as a camera does. */
+static status photograph(const lit_subject *on, int number, photographs *out)
+{
+    img radiance = {0}, *photo = &out->photo[out->count];
+    float white = 1;
+    img_free(&out->mask);
+    status s = lit_radiance(on, &(lit_mixture){.lamp = number}, &radiance, &white);
+    for (size_t i = 0; s == OK && i < img_value_count(&radiance); i++)
+        radiance.data[i] = clamp(radiance.data[i] / white, 0, 1);
+    if (s == OK) s = input_make(&radiance, &on->s->mask, network_side(NETWORK_SIZE), photo, &out->mask);
+    img_free(&radiance);
+    if (s != OK) return s;
+    out->count++;
+    input_expose(photo, exposure_gain(photo, &out->mask));
+    return OK;
+}
+
+/* Computes the mean of the maps that a network of one photograph makes of each. */
+static status mean_of_each(const run *r, const photographs *p, int count, network_estimation *out)
+{
+    status s = view_mean_new(network_config(r->network), p->mask.width, out);
+    for (int i = 0; i < count && s == OK; i++) {
+        network_estimation one = {0};
+        s = network_estimate(r->network, &p->photo[i], &p->mask, &p->how, r->options->views, NULL, &one);
+        if (s == OK) view_mean_add(out, &one, 0, 1.0f / (float)count);
+        network_estimation_free(&one);
+    }
+    if (s == OK) surface_tidy_normals(&p->mask, &out->maps.normal);
+    return s;
+}
+
+static status measure(const run *r, const lit_subject *on, const photographs *p, int row)
+{
+    const int count = 1 << row;
+    network_estimation found = {0};
+    status s = r->table->together ? network_estimate_several(r->network, p->photo, count, &p->mask, &p->how,
+                                                             r->options->views, r->options->stopped, NULL, &found)
+                                  : mean_of_each(r, p, count, &found);
+    if (s == OK) {
+        lit_figures_add(&found.maps, on, r->table->mean[row]);
+        r->table->count[row]++;
+    }
+    network_estimation_free(&found);
+    return s;
+}
+
+static status measure_sample(run *r, const sample *s)
+{
+    lit_subject on;
+    photographs all = {.how = {.lens = {s->fov, s->slant}}};
+    status st = lit_subject_new(s, &on);
+    if (st != OK) return st;
+    if (s->mask.width != NETWORK_SIZE || s->mask.height != NETWORK_SIZE)
+        st = fail(MERLIN_BAD_INPUT, "samples of %d×%d pixels: render them with --size %d", s->mask.width,
+                  s->mask.height, NETWORK_SIZE);
+    for (int i = 0; i < s->lamp_count && i < MOST && st == OK; i++)
+        st = photograph(&on, i, &all);
+    for (int row = 0; row < SEVERAL_ROWS && 1 << row <= all.count && st == OK; row++)
+        st = measure(r, &on, &all, row);
+    photographs_free(&all);
+    lit_subject_free(&on);
+    return st;
+}
+
+static status measure_file(void *context, const char *path)
+{
+    run *r = context;
+    sample s;
+    status st = lit_sample_read(path, &s);
+    if (st != OK) return st;
+    st = measure_sample(r, &s);
+    if (st == OK) r->table->samples++;
+    sample_free(&s);
+    return st;
+}
+
+static void finish(several_table *t)
+{
+    for (int row = 0; row < SEVERAL_ROWS; row++)
+        for (int f = 0; f < LIT_FIGURES; f++)
+            t->mean[row][f] = t->count[row] ? t->mean[row][f] / (double)t->count[row] : (double)NAN;
+}
+
+status several_table_run(const several_options *options, several_table *out)
+{
+    *out = (several_table){.samples = 0};
+    const double began = clock_seconds();
+    const eval_samples all = {options->data, "evaluating", options->count, options->quiet, options->stopped};
+    run r = {.options = options, .table = out};
+    status s = network_open(options->weights, &r.network);
+    if (s != OK) return s;
+    const model_config *c = network_config(r.network);
+    snprintf(out->model, sizeof out->model, "%s", c->name);
+    out->together = c->several;
+    if (c->lighting == MODEL_LIGHT_ANY)
+        s = eval_each_sample(&all, measure_file, &r);
+    else
+        s = fail(MERLIN_BAD_INPUT, "%s: model \"%s\" is for flashes, not for lamps", options->weights, c->name);
+    network_close(r.network);
+    finish(out);
+    out->seconds = clock_seconds() - began;
+    return s;
+}
+
+/* ---- reports ---- */
+
+static const struct {
+    const char *heading, *key;
+    double factor; /* of the printed figure */
+} words[LIT_FIGURES] = {
+    [LIT_ANGLE] = {"degrees", "normal_angle_degrees", 1},
+    [LIT_ALBEDO] = {"albedo", "albedo_error", 100},
+    [LIT_ALBEDO_FREE] = {"its scale free", "albedo_error_scale_free", 100},
+    [LIT_ROUGHNESS] = {"roughness", "roughness_error", 100},
+    [LIT_RELIEF] = {"relief", "relief_error", 100},
+};
+
+enum { CELL = 16 };
+
+void several_table_print(const several_table *t, FILE *stream)
+{
+    fprintf(stream, "%s%s on %zu samples; errors in 1e-2, relief in hundredths of the frame's width\n\n%-*s%*s",
+            t->model, t->together ? "" : ", the mean of its estimates,", t->samples, CELL, "photographs", CELL,
+            "samples");
+    for (int f = 0; f < LIT_FIGURES; f++)
+        fprintf(stream, "%*s", CELL, words[f].heading);
+    for (int row = 0; row < SEVERAL_ROWS && t->count[row] > 0; row++) {
+        fprintf(stream, "\n%-*d%*zu", CELL, 1 << row, CELL, t->count[row]);
+        for (int f = 0; f < LIT_FIGURES; f++)
+            fprintf(stream, "%*.2f", CELL, words[f].factor * t->mean[row][f]);
+    }
+    fprintf(stream, "\n\n%.1f s\n", t->seconds);
+}
+
+char *several_table_json(const several_table *t)
+{
+    cJSON *root = report_begin(&(warnings){0});
+    json_put_text(root, "model", t->model);
+    json_put_number(root, "samples", (double)t->samples);
+    json_put_number(root, "seconds", t->seconds);
+    cJSON *rows = json_put_object(root, "photographs");
+    for (int row = 0; row < SEVERAL_ROWS && t->count[row] > 0; row++) {
+        char name[16];
+        snprintf(name, sizeof name, "%d", 1 << row);
+        cJSON *o = json_put_object(rows, name);
+        json_put_number(o, "samples", (double)t->count[row]);
+        for (int f = 0; f < LIT_FIGURES; f++)
+            json_put_number(o, words[f].key, t->mean[row][f]);
+    }
+    char *text = json_print_line(root);
+    cJSON_Delete(root);
+    return text;
+}
