@@ -1,0 +1,130 @@
+/* SPDX-License-Identifier: MIT */
+/* network_estimate_several: of one photograph it is network_estimate, the photographs' order does not matter, and each
+ * has a light. */
+#include "base/rng.h"
+#include "estimate/photo/network.h"
+#include "scratch.h"
+#include "weights.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
+
+enum { SIZE = 64, PIXELS = SIZE * SIZE, PICTURES = 3, VIEWS = 3 };
+
+typedef struct fixture {
+    network *network, *single;
+    img photo[PICTURES], mask;
+} fixture;
+
+static const sight how = {.lens = {.fov = 35, .slant = {0.1f, -0.05f}}};
+
+static int set_up(void **state)
+{
+    fixture *f = calloc(1, sizeof *f);
+    if (!f || scratch_open(state) != 0) return -1;
+    *state = f;
+    const char *several = scratch_path("several.safetensors"), *any = scratch_path("any.safetensors");
+    if (write_random_weights_of("merlin-several", several) != OK || network_open(several, &f->network) != OK) return -1;
+    if (write_random_weights_of("merlin-any", any) != OK || network_open(any, &f->single) != OK) return -1;
+    network_compute_in(f->network, NN_FLOAT32);
+    if (img_new(&f->mask, SIZE, SIZE, 1) != OK) return -1;
+    for (int i = 0; i < PIXELS; i++)
+        f->mask.data[i] = hypotf((float)(i % SIZE) - 30, (float)(i / SIZE) - 33) < 25;
+    for (int k = 0; k < PICTURES; k++) {
+        if (img_new(&f->photo[k], SIZE, SIZE, 3) != OK) return -1;
+        rng r = rng_at(4, (uint64_t)k, 0);
+        for (int i = 0; i < 3 * PIXELS; i++)
+            f->photo[k].data[i] = f->mask.data[i / 3] * (0.2f + 0.1f * (float)k + 0.3f * rng_uniform(&r));
+    }
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    fixture *f = *state;
+    network_close(f->network);
+    network_close(f->single);
+    for (int k = 0; k < PICTURES; k++)
+        img_free(&f->photo[k]);
+    img_free(&f->mask);
+    free(f);
+    return scratch_close(state);
+}
+
+static void assert_near(const img *a, const img *b, float tolerance)
+{
+    assert_int_equal(img_value_count(a), img_value_count(b));
+    for (size_t i = 0; i < img_value_count(a); i++)
+        assert_float_equal(a->data[i], b->data[i], tolerance);
+}
+
+static void one_photograph_is_estimated_as_alone(void **state)
+{
+    const fixture *f = *state;
+    network_estimation alone, several;
+    float lights[1][MODEL_LIGHTS];
+    assert_int_equal(network_estimate(f->network, f->photo, &f->mask, &how, VIEWS, NULL, &alone), OK);
+    assert_int_equal(network_estimate_several(f->network, f->photo, 1, &f->mask, &how, VIEWS, NULL, lights, &several),
+                     OK);
+    assert_near(&several.maps.normal, &alone.maps.normal, 0);
+    assert_near(&several.maps.albedo, &alone.maps.albedo, 0);
+    assert_near(&several.maps.depth, &alone.maps.depth, 0);
+    assert_near(&several.visibility, &alone.visibility, 0);
+    assert_memory_equal(lights[0], alone.lights, sizeof lights[0]);
+    network_estimation_free(&alone);
+    network_estimation_free(&several);
+}
+
+static void the_order_of_photographs_changes_only_the_lights(void **state)
+{
+    const fixture *f = *state;
+    network_estimation found[2];
+    float lights[2][PICTURES][MODEL_LIGHTS];
+    const img order[2][PICTURES] = {{f->photo[0], f->photo[1], f->photo[2]}, {f->photo[2], f->photo[0], f->photo[1]}};
+    for (int k = 0; k < 2; k++)
+        assert_int_equal(
+            network_estimate_several(f->network, order[k], PICTURES, &f->mask, &how, VIEWS, NULL, lights[k], &found[k]),
+            OK);
+    assert_near(&found[0].maps.normal, &found[1].maps.normal, 1e-3f); /* sums in another order */
+    assert_near(&found[0].maps.albedo, &found[1].maps.albedo, 1e-3f);
+    for (int i = 0; i < MODEL_LIGHTS; i++)
+        for (int k = 0; k < PICTURES; k++)
+            assert_float_equal(lights[1][k][i], lights[0][(k + 2) % PICTURES][i], 1e-4f);
+    assert_true(fabsf(lights[0][0][0] - lights[0][1][0]) > 1e-6f);
+    network_estimation_free(&found[0]);
+    network_estimation_free(&found[1]);
+}
+
+static int always(void)
+{
+    return 1;
+}
+
+static void what_it_cannot_take_is_refused(void **state)
+{
+    const fixture *f = *state;
+    network_estimation e;
+    assert_int_equal(network_estimate_several(f->single, f->photo, 2, &f->mask, &how, 1, NULL, NULL, &e),
+                     MERLIN_WRONG_USE);
+    assert_non_null(strstr(status_message(), "one photograph at a time"));
+    assert_int_equal(network_estimate_several(f->network, f->photo, 0, &f->mask, &how, 1, NULL, NULL, &e),
+                     MERLIN_WRONG_USE);
+    assert_int_equal(network_estimate_several(f->network, f->photo, 2, &f->mask, &how, 1, always, NULL, &e),
+                     MERLIN_STOPPED);
+    assert_null(e.maps.albedo.data);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_photograph_is_estimated_as_alone),
+        cmocka_unit_test(the_order_of_photographs_changes_only_the_lights),
+        cmocka_unit_test(what_it_cannot_take_is_refused),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
