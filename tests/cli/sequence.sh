@@ -62,6 +62,28 @@ cp apart/frame_0001/mask.png first.png
 succeeds '"object":"given"' estimate 'still/frame_%04d.png' --mask first.png -o masked --json
 [ "$(grep -o '"object":"followed"' stdout | wc -l)" = 5 ] || complain "a given mask was not followed: $(cat stdout)"
 
+echo "a sequence is relit, by one light or by one that goes round"
+succeeds '"sequence":6' "$MERLIN" relight steady --light 0.7,0.3,-0.4 --json
+present steady/relit/frame_0001.png steady/relit/frame_0006.png
+succeeds '^moved: turned' "$MERLIN" relight moved --orbit 6 --format jpg -o turned
+present turned/frame_0006.jpg
+cmp -s turned/frame_0001.jpg turned/frame_0004.jpg && complain "an orbit stands still"
+if grep -q 'not written as a video' stderr; then absent turned/relit.mp4; else present turned/relit.mp4; fi
+rm turned/frame_0006.jpg
+cp turned/frame_0001.jpg turned/frame_0099.jpg
+succeeds '^moved: turned' "$MERLIN" relight moved --light 0,0,0 --direction 1,0,1 --together --format jpg -o turned
+grep -q 'earlier run is still beside these, frame_0099.jpg' stderr || complain "no word of what is left: $(cat stderr)"
+refuses 2 'several lamps want --together' "$MERLIN" relight moved --light 0,0,0 --light 1,0,0
+refuses 2 'not both' "$MERLIN" relight moved --light 0,0,0 --orbit 4
+refuses 2 'no --dome' "$MERLIN" relight moved --dome 4
+refuses 2 'merlin estimate still/frame_%04d.png, then' "$MERLIN" relight 'still/frame_%04d.png' --light 0,0,0
+refuses 1 'does not have the light\|found none' "$MERLIN" relight moved --found-light -o none
+rm moved/frame_0003/maps.exr
+refuses 1 'there are no maps in moved/frame_0003' "$MERLIN" relight moved --light 0,0,0 -o none
+absent none
+printf '{"frames": []}' >moved/sequence.json
+refuses 1 'moved/sequence.json is damaged' "$MERLIN" relight moved --light 0,0,0 -o none
+
 echo "what is no sequence is refused"
 refuses 2 '--smooth is for' estimate "$demo" --smooth 4
 refuses 2 'no --share and no --resume' estimate --sequence still --share 1/2

@@ -49,6 +49,7 @@ typedef struct request {
     int orbit, frame;
     relight_dome dome;
     relight_rti rti;
+    bool sequence; /* whether input is a folder of frames */
     bool found, near, together, no_shadows, no_bounces, matte, json, quiet, help;
     int captured; /* whether input is a capture's maps */
 } request;
@@ -154,6 +155,22 @@ static status check_way(request *r)
     return s;
 }
 
+/* Checks what a sequence's frames are lit by: one light for all, or an orbit. */
+static status check_sequence(const request *r)
+{
+    if (!r->sequence) return OK;
+    if (r->dome.count || r->frame || r->near || to_standard_output(r))
+        return fail(MERLIN_WRONG_USE,
+                    "%s is a sequence, whose frames have one light: no --dome, --near, --frame and no -o -", r->input);
+    if (r->lamps.count > 1 && !r->together)
+        return fail(MERLIN_WRONG_USE, "%s is a sequence, whose frames have one light: several lamps want --together",
+                    r->input);
+    if (r->orbit && r->lamps.count && !r->env)
+        return fail(MERLIN_WRONG_USE,
+                    "the lamp of a sequence stands still or goes round: --orbit or --light, not both");
+    return OK;
+}
+
 static status check_photo(const request *r)
 {
     if (!file_is_folder(r->input)) return photo_check_hint(&r->params.hint, r->mask, false);
@@ -183,10 +200,11 @@ static status check(request *r)
         return fail(MERLIN_WRONG_USE, "--together goes with an --orbit of an --env, beside which its lamps stand");
     if (r->frame && r->orbit == 0) return fail(MERLIN_WRONG_USE, "--frame is the side of an --orbit's frames");
     const bool whole = r->lamps.count || r->list || r->dome.count || r->env || r->found;
-    if (r->format.given && !whole)
+    if (r->format.given && !whole && !r->sequence)
         return fail(MERLIN_WRONG_USE, "--format is of pictures of the photograph's size; an --orbit's frames are PNG");
     status s = check_dome(r);
     if (s == OK) s = check_standard_output(r);
+    if (s == OK) s = check_sequence(r);
     if (s == OK) s = check_photo(r);
     return s == OK ? check_way(r) : s;
 }
@@ -235,6 +253,10 @@ static status parse(int *argc, char ***argv, request *r)
     if (*argc == 0) return fail(MERLIN_WRONG_USE, "no photograph or folder given");
     if (*argc > 1) return fail(MERLIN_WRONG_USE, "one photograph or folder at a time, not also %s", (*argv)[1]);
     s = photo_take_input(*argv, r->output, &r->input);
+    if (s == OK && merlin_frames_are(r->input))
+        s = fail(MERLIN_WRONG_USE, "%s is a sequence: merlin estimate %s, then relight the folder that this writes",
+                 r->input, r->input);
+    r->sequence = s == OK && merlin_sequence_is(r->input);
     return s == OK ? check(r) : s;
 }
 
@@ -247,6 +269,7 @@ static status check_lamps(const request *r)
     for (size_t i = 0; i < r->lamps.count && s == OK; i++)
         s = merlin_relighting_check(r->how, &r->lamps.at[i], r->env != NULL);
     if (s == OK && r->env && r->lamps.count == 0) s = merlin_relighting_check(r->how, NULL, 1);
+    if (s == OK) s = check_sequence(r); /* with the lamps of a list */
     return s == OK ? check_standard_output(r) : s;
 }
 
@@ -256,12 +279,14 @@ static status read_lamps(request *r)
     return s == OK ? check_lamps(r) : s;
 }
 
-/* Gets maps from a folder of estimate or stereo, and the model that relights them; or estimates them by it now. */
-static status get_maps(request *r, const watch *shown, merlin_model **model, merlin_maps *maps)
+/* Gets maps from a folder of estimate or stereo, or of a sequence's first frame, and the model that relights them; or
+ * estimates them by it now. */
+static status get_maps(request *r, const merlin_sequence_files *frames, const watch *shown, merlin_model **model,
+                       merlin_maps *maps)
 {
     const bool folder = file_is_folder(r->input);
     char *weights = NULL, *flash = NULL;
-    status s = folder ? merlin_maps_read(r->input, maps) : OK;
+    status s = folder ? merlin_maps_read(frames->count ? frames->at[0].folder : r->input, maps) : OK;
     if (s == OK) s = photo_find_models_of(maps, r->model, &weights, &flash);
     if (s == OK) s = photo_open_models(weights, flash, model);
     free(weights);
@@ -288,6 +313,8 @@ static void find_doubts(const relight_job *job, const relight_result *result, wa
     relit_light_warn_negative(merlin_environment_negative(job->environment), doubts);
     relit_light_warn(&result->seen,
                      job->exposing == RELIGHT_AS_SOURCE ? "--exposure auto or an EV below 0" : "--exposure EV", doubts);
+    if (*result->no_video)
+        warnings_add(doubts, "no_video", "the frames were not written as a video, too: %s", result->no_video);
     if (result->left > 0)
         warnings_add(doubts, "pictures_left", "%zu picture%s of an earlier run %s still beside these, %s first",
                      result->left, result->left == 1 ? "" : "s", result->left == 1 ? "is" : "are", result->left_name);
@@ -303,6 +330,7 @@ static status print_json(const request *r, const relight_job *job, const relight
     json_put_number(report, "lights", (double)job->lamps.count);
     json_put_number(report, "orbit", job->orbit);
     json_put_number(report, "dome", job->dome.count);
+    if (job->frames) json_put_number(report, "sequence", (double)job->frames->count);
     if (job->rti.wanted) json_put_text(report, "rti", relight_rti_name(&job->rti));
     json_put_text(report, "by", r->how == MERLIN_BY_NETWORK ? "network" : "brdf");
     json_put_text(report, "model", merlin_relighting_model(job->model, job->maps, job->how));
@@ -375,6 +403,7 @@ static status relight(request *r, const char *output)
     job.inputs = (const char *const[STAGING_MOST_INPUTS]){r->input, r->mask, r->env, r->list};
     merlin_maps maps = {0};
     merlin_environment *environment = NULL;
+    merlin_sequence_files frames = {.count = 0};
     stage_bar bar;
     status s = OK;
     stage_bar_begin(&bar, r->quiet);
@@ -384,7 +413,9 @@ static status relight(request *r, const char *output)
     watch_tell(&shown, "reading", 0);
     if (r->env) s = merlin_environment_read(r->env, r->rotate, r->env_exposure, &environment);
     job.environment = environment;
-    if (s == OK) s = get_maps(r, &shown, &job.model, &maps);
+    if (s == OK && r->sequence) s = merlin_sequence_read(r->input, &frames);
+    if (r->sequence) job.frames = &frames;
+    if (s == OK) s = get_maps(r, &frames, &shown, &job.model, &maps);
     job.maps = &maps;
     if (s == OK) s = to_standard_output(r) ? relight_print(&job, &result) : relight_output(&job, &result);
     stage_bar_end(&bar);
@@ -393,6 +424,7 @@ static status relight(request *r, const char *output)
     merlin_maps_free(&maps);
     merlin_model_close(job.model);
     merlin_environment_free(environment);
+    merlin_sequence_files_free(&frames);
     return s == MERLIN_STOPPED ? fail(s, "interrupted; nothing was written to %s", output) : s;
 }
 

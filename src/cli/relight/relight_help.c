@@ -12,8 +12,9 @@ static const char help[] =
     "       merlin relight PHOTO|DIR --env FILE [--rotate DEG] [--light x,y,z] [--orbit N] [options]\n"
     "       merlin relight PHOTO|DIR --found-light [--rotate DEG] [--orbit N] [options]\n\n"
     "Shows an object under a lamp, an environment, or both instead of the flash. DIR is a folder made by\n"
-    "merlin estimate or merlin stereo (whose surfaces have no gloss), or its maps.exr; a PHOTO (or -,\n"
-    "which is standard input and wants -o) is estimated first.\n"
+    "merlin estimate or merlin stereo (whose surfaces have no gloss), or its maps.exr, or a sequence's, whose frames\n"
+    "have one light (with --orbit one that goes round in N frames); a PHOTO (or -, which is standard input and wants\n"
+    "-o) is estimated first.\n"
     "The camera is at 0,0,0 and looks along -z, x right, y up; the object is near 0,0,-1; the crop around the object\n"
     "counts as a frame 60 degrees wide.\n\n";
 
@@ -82,7 +83,9 @@ static const char help_on_options[] =
 static const char help_on_files[] =
     "Writes relit_000.png and on, and relit.png: of one light the picture itself, of several a sheet with all of "
     "them;\n"
-    "for an orbit frame_000.png and on, and orbit.png.\n";
+    "for an orbit frame_000.png and on, and orbit.png; for a sequence its frames, frame_0001.png and on, and relit.mp4 "
+    "if\n"
+    "FFmpeg's libraries are there.\n";
 
 void relight_print_help(void)
 {

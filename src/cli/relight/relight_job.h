@@ -54,6 +54,7 @@ typedef struct relight_job {
     int orbit; /* number of frames; 0: none. A given environment rotates, with the first of the lights if any; so does
                 * the estimated light; otherwise a lamp moves around */
     int frame; /* side of the frames; 0: the crop's, at most 512 */
+    const merlin_sequence_files *frames; /* a sequence, of which `maps` are the first frame's; or NULL */
     int (*stop)(void);
     const watch *watch; /* receives "preparing", "relighting", "going round" (of an orbit) and "animating" */
 } relight_job;
@@ -65,6 +66,7 @@ typedef struct relight_result {
     relit_light seen;   /* what is burnt out or black */
     size_t left;        /* number of numbered pictures of an earlier run among them */
     char left_name[16]; /* name of the first of these */
+    char no_video[256]; /* why a sequence was not written as a video; "": it was, or there is none */
 } relight_result;
 
 /* Returns the number of pictures of the photograph's size. */

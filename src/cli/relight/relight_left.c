@@ -33,7 +33,8 @@ void relight_find_left(const relight_job *job, relight_result *result)
     for (size_t i = 0; i < count; i++) {
         const char *name = file_name_of(paths[i]);
         const bool beside = (relight_count_whole(job) > 0 && relight_is_numbered(name, "relit_")) ||
-                            (job->orbit > 0 && relight_is_numbered(name, "frame_"));
+                            (job->orbit > 0 && relight_is_numbered(name, "frame_")) ||
+                            (job->frames && strncmp(name, "frame_", 6) == 0);
         if (!beside || was_written(&result->files, paths[i])) continue;
         if (result->left++ == 0) snprintf(result->left_name, sizeof result->left_name, "%s", name);
     }

@@ -2,7 +2,6 @@
 #include "cli/relight/relight_output.h"
 
 #include <errno.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -33,62 +32,6 @@ static status write_lights(relight_work *w)
     return s;
 }
 
-/* ---- exposure ---- */
-
-static size_t count_lamps(const relight_job *job)
-{
-    return job->lamps.count + (size_t)job->dome.count + (relight_surroundings_turn(job) ? 0 : (size_t)job->orbit);
-}
-
-/* Collects all lamps of all pictures, which get one exposure so that they can be compared. */
-static void gather(const relight_job *job, merlin_lamp *all)
-{
-    size_t count = 0;
-    for (size_t i = 0; i < job->lamps.count; i++)
-        all[count++] = job->lamps.at[i];
-    for (int i = 0; i < job->dome.count; i++)
-        all[count++] = relight_dome_lamp(job, i);
-    for (int i = 0; !relight_surroundings_turn(job) && i < job->orbit; i++)
-        all[count++] = relight_orbit_lamp(job, i);
-    for (size_t i = 0; job->exposing == RELIGHT_BY_LAMPS && i < count; i++)
-        all[i].power[0] = all[i].power[1] = all[i].power[2] = 1;
-}
-
-/* Meters lamps for one picture each, or for one picture of all together: what each needs is then added up, as their
- * light does. */
-static status meter(const relight_work *w, const merlin_lamp *all, size_t count, float *white)
-{
-    const relight_job *job = w->job;
-    if (!job->together) return merlin_relighter_meter(w->relighter, all, count, job->environment, white);
-    float sum = 0;
-    status s = OK;
-    for (size_t i = 0; i < count && s == OK; i++) {
-        float one = 0;
-        s = merlin_relighter_meter(w->relighter, all + i, 1, job->environment, &one);
-        sum += one;
-    }
-    if (s == OK) *white = sum;
-    return s;
-}
-
-static status expose(relight_work *w)
-{
-    const relight_job *job = w->job;
-    const float as_source = merlin_relighter_white(w->relighter);
-    float white = as_source;
-    size_t count = count_lamps(job);
-    bool metered = job->exposing == RELIGHT_AUTO || (job->exposing == RELIGHT_BY_LAMPS && count > 0);
-    merlin_lamp *all = malloc((count + 1) * sizeof *all);
-    if (!all) return fail(MERLIN_NO_MEMORY, "no memory for %zu lamps", count);
-    gather(job, all);
-    status s = metered ? meter(w, all, count, &white) : OK;
-    white /= exp2f(job->ev);
-    if (s == OK) s = merlin_relighter_set_white(w->relighter, white);
-    w->result->ev = log2f(as_source / white);
-    free(all);
-    return s;
-}
-
 /* ---- the whole ---- */
 
 static int frame_side(const relight_job *job)
@@ -105,21 +48,11 @@ static void free_photo_maps(merlin_maps *m)
         merlin_image_free(spent[i]);
 }
 
-static status prepare_relighter(relight_work *w, int side)
-{
-    const relight_job *job = w->job;
-    watch_tell(job->watch, "preparing", 0);
-    status s = merlin_relighter_new(job->model, job->maps, side, job->how, &w->relighter);
-    if (s == OK && job->matte) s = merlin_relighter_make_matte(w->relighter);
-    if (s == OK && job->found) s = merlin_found_lights_new(&job->maps->light, job->turn, &w->found);
-    return s == OK ? expose(w) : s;
-}
-
 static status write_all(relight_work *w)
 {
     const relight_job *job = w->job;
     bool whole = relight_count_whole(job) > 0, both = whole && job->orbit > 0;
-    status s = prepare_relighter(w, whole ? 0 : frame_side(job));
+    status s = relight_prepare(w, whole ? 0 : frame_side(job));
     if (s == OK && !both) free_photo_maps(job->maps);
     if (s == OK) s = write_lights(w);
     if (s == OK && job->dome.count) s = job->rti.wanted ? relight_write_rti(w) : relight_write_dome(w);
@@ -138,7 +71,7 @@ status relight_output(const relight_job *job, relight_result *result)
     status s = job->dome.count && !job->rti.wanted ? relight_dome_check(job) : OK;
     if (s == OK) s = staging_begin(job->output, job->inputs, &w.staging);
     if (s != OK) return s;
-    s = write_all(&w);
+    s = job->frames ? relight_write_frames(&w) : write_all(&w);
     if (s == OK) s = relight_check(&w);
     if (s != OK) return staging_abort(w.staging, s);
     s = staging_commit(w.staging, &result->files);
@@ -161,7 +94,7 @@ status relight_print(const relight_job *job, relight_result *result)
     merlin_image square = {0}, whole = {0};
     uint8_t *data = NULL;
     size_t size = 0;
-    status s = prepare_relighter(&w, 0);
+    status s = relight_prepare(&w, 0);
     watch_tell(job->watch, "relighting", 0);
     int count;
     const merlin_lamp *lights = relight_lamps(&w, 0, &count);

@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* Parts of relight_output.h besides single pictures: domes, orbits, and files of an earlier run. */
+/* Parts of relight_output.h besides single pictures: exposure, domes, orbits, sequences, and files of an earlier run.
+ */
 #ifndef MERLIN_CLI_RELIGHT_RELIGHT_PARTS_H
 #define MERLIN_CLI_RELIGHT_RELIGHT_PARTS_H
 
 #include "cli/relight/relight_work.h"
 
+/* Makes the relighter of the job's maps, with pictures of this side (0: the photograph's size), and exposes them. */
+status relight_prepare(relight_work *w, int side);
 /* Tells whether a name is kind_000.png or .jpg with any number; kind: with its "_". */
 bool relight_is_numbered(const char *name, const char *kind);
 /* Returns lamp i of a dome. */
@@ -18,5 +21,8 @@ status relight_write_dome(relight_work *w);
 merlin_lamp relight_orbit_lamp(const relight_job *job, int i);
 /* Writes frame_000.png and so on, orbit.png and animations; the relighter has the frames' size. */
 status relight_write_orbit(relight_work *w, int side);
+/* Writes a picture of each frame of a sequence, frame_0001.png and so on, and all of them as relit.mp4 if there is an
+ * encoder. The job's maps are the first frame's. */
+status relight_write_frames(relight_work *w);
 
 #endif
