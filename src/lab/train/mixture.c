@@ -312,8 +312,9 @@ static void shift_photo(const train_view *v, const float shift[2])
     float *held = v->reconstruction; /* which is computed later */
     memcpy(held, v->photo, 3 * pixels * sizeof *held);
     for (size_t i = 0; i < pixels; i++) {
-        const float x = (float)(i % (size_t)v->size), y = (float)(i / (size_t)v->size);
-        vec3_put(value_at(held, v->size, x - shift[0], y - shift[1]), v->photo + 3 * i);
+        const size_t column = i % (size_t)v->size, row = i / (size_t)v->size;
+        const vec3 value = value_at(held, v->size, (float)column - shift[0], (float)row - shift[1]);
+        vec3_put(value, v->photo + 3 * i);
     }
 }
 
