@@ -80,6 +80,42 @@ static status judge(const img *a, const img *b, const img *mask, const float bou
     return s;
 }
 
+/* Lets what is the same end softly where something else begins, so that no seam shows. */
+static status soften(img *same)
+{
+    enum { SEAM = 4 };
+    img around = {0};
+    status s = img_copy(&around, same);
+    if (s == OK) s = img_box_sums(&around, SEAM);
+    for (int y = 0; s == OK && y < same->height; y++)
+        for (int x = 0; x < same->width; x++) {
+            const int left = x < SEAM ? x : SEAM, right = same->width - 1 - x < SEAM ? same->width - 1 - x : SEAM;
+            const int above = y < SEAM ? y : SEAM, below = same->height - 1 - y < SEAM ? same->height - 1 - y : SEAM;
+            const float mean = *img_at(&around, x, y) / (float)((left + right + 1) * (above + below + 1));
+            float *value = img_at(same, x, y);
+            *value = fminf(*value, clamp(2 * mean - 1, 0, 1));
+        }
+    img_free(&around);
+    return s;
+}
+
+/* Trusts what is the same less where little of the object is: then it is so by chance, as what is dark before and after
+ * a lamp has moved. */
+static void distrust(const img *mask, img *same)
+{
+    static const float LITTLE = 0.2f, ENOUGH = 0.6f;
+    double sum = 0, count = 0;
+    for (size_t i = 0; i < img_value_count(same); i++) {
+        if (mask->data[i] < 0.5f) continue;
+        sum += (double)same->data[i];
+        count++;
+    }
+    const float mean = count > 0 ? (float)(sum / count) : 1;
+    const float trust = clamp((mean - LITTLE) / (ENOUGH - LITTLE), 0, 1);
+    for (size_t i = 0; i < img_value_count(same) && trust < 1; i++)
+        same->data[i] *= trust;
+}
+
 status sequence_sameness(const sequence_history *h, const img *now, img *same, float *difference)
 {
     img before = {0}, after = {0};
@@ -93,6 +129,8 @@ status sequence_sameness(const sequence_history *h, const img *now, img *same, f
     if (s == OK) s = img_box_sums(&before, RADIUS);
     if (s == OK) s = img_box_sums(&after, RADIUS);
     if (s == OK) s = judge(&before, &after, &h->mask, (const float[2]){LEAST_MEAN, MOST_MEAN}, WINDOW, same, &mean);
+    if (s == OK) s = soften(same);
+    if (s == OK) distrust(&h->mask, same);
     img_free(&before);
     img_free(&after);
     if (s != OK) img_free(same);

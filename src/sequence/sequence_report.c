@@ -48,9 +48,9 @@ void merlin_sequence_warnings(const merlin_sequence *sequence, const merlin_fram
             "give masks",
             lost, sequence->count, first_frame(sequence, true));
     if (head && head->missing)
-        warnings_add(out, "frames_missing", "%ld frames are missing, first %ld", head->missing, head->first_gap);
+        warnings_add(out, "frames_missing", "frames are missing (%ld), first %ld", head->missing, head->first_gap);
     if (cuts)
-        warnings_add(out, "cuts", "%ld frames, first %ld, are of another scene than the one before", cuts,
+        warnings_add(out, "cuts", "another scene begins in %ld of %zu frames, first in %ld", cuts, sequence->count,
                      first_frame(sequence, false));
     if (head && head->interlaced)
         warnings_add(out, "interlaced", "odd and even lines are from different times; deinterlace the video first");

@@ -48,10 +48,18 @@ echo "frames keep their numbers, and a gap is told"
 mkdir gap
 cp still/frame_0001.png still/frame_0002.png still/frame_0005.png gap
 succeeds '^gap/frame_%04d.png: 3 frames in gap/frame.merlin' estimate 'gap/frame_%04d.png'
-grep -q '2 frames are missing, first 3' stderr || complain "no word of the gap: $(cat stderr)"
+grep -q 'frames are missing (2), first 3' stderr || complain "no word of the gap: $(cat stderr)"
 present gap/frame.merlin/frame_0005/maps.exr
 absent gap/frame.merlin/frame_0003
 succeeds '"frames_missing"' estimate gap/frame_0005.png gap/frame_0001.png gap/frame_0002.png --sequence -o gap.maps --json
+
+echo "a cut begins anew"
+mkdir cut
+cp still/frame_0001.png cut/1.png
+cp still/frame_0002.png cut/2.png
+"$SEQUENCE_FRAMES" "$MERLIN_SOURCE_DIR/examples/window.png" cut moving 1 && mv cut/frame_0001.png cut/3.png
+succeeds '"cut":true' estimate --sequence cut -o cut.maps --json
+grep -q 'another scene begins in 1 of 3 frames, first in 3' stderr || complain "no word of the cut: $(cat stderr)"
 
 echo "several photographs without --sequence are what they were"
 succeeds 'batch/frame_0002/overview.png' estimate gap/frame_0001.png gap/frame_0002.png -o batch

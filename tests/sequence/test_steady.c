@@ -166,6 +166,25 @@ static void an_object_is_followed_beside_another(void **state)
     img_free(&mirrored);
 }
 
+static void a_part_that_was_dark_belongs_to_the_object_again(void **state)
+{
+    (void)state;
+    img photo, before, mask;
+    float overlap;
+    make_picture(0, 0, 0.01f, &photo);
+    make_mask(0, 0, 40, &before);
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 100; x < WIDTH; x++)
+            *img_at(&before, x, y) = 0;
+    assert_int_equal(find_object_again(&photo, &before, &mask, &overlap), OK);
+    assert_true(*img_at(&mask, 80, 70) > 0.9f);
+    assert_true(*img_at(&mask, 112, 70) > 0.9f);
+    assert_true(*img_at(&mask, 128, 70) < 0.1f);
+    img_free(&photo);
+    img_free(&before);
+    img_free(&mask);
+}
+
 /* Makes maps of a constant albedo within the disc. */
 static void make_maps(float albedo, merlin_maps *maps)
 {
@@ -222,6 +241,33 @@ static void maps_are_averaged_where_nothing_moved_and_only_there(void **state)
     sequence_history_free(&h);
 }
 
+static void what_is_the_same_where_nearly_all_changed_is_not_averaged(void **state)
+{
+    (void)state;
+    sequence_history h = {.unit = 1};
+    img first, second, now, then, same;
+    merlin_maps maps;
+    float kept, difference;
+    make_picture(0, 0, 0.01f, &first);
+    make_picture(0, 0, 0.01f, &second);
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 50; x < WIDTH; x++) /* all but the left edge of the disc */
+            for (int c = 0; c < 3; c++)
+                img_at(&second, x, y)[c] *= 1.6f;
+    assert_int_equal(sequence_encode(&first, &then), OK);
+    assert_int_equal(sequence_encode(&second, &now), OK);
+    make_maps(0.5f, &maps);
+    assert_int_equal(sequence_blend(&h, &then, NULL, 8, false, &maps, &kept), OK);
+    assert_int_equal(sequence_sameness(&h, &now, &same, &difference), OK);
+    assert_true(*img_at(&same, 44, 70) == 0 && *img_at(&same, 90, 70) == 0);
+    assert_true(difference > 0.05f);
+    merlin_maps_free(&maps);
+    sequence_history_free(&h);
+    img *images[] = {&first, &second, &now, &then, &same};
+    for (size_t i = 0; i < 5; i++)
+        img_free(images[i]);
+}
+
 static void a_patch_that_flickers_into_the_mask_is_not_shown(void **state)
 {
     (void)state;
@@ -256,6 +302,8 @@ int main(void)
         cmocka_unit_test(what_is_burnt_out_stays_so_and_nothing_becomes_it),
         cmocka_unit_test(a_crop_moves_with_the_object_and_not_with_its_outline),
         cmocka_unit_test(an_object_is_followed_beside_another),
+        cmocka_unit_test(a_part_that_was_dark_belongs_to_the_object_again),
+        cmocka_unit_test(what_is_the_same_where_nearly_all_changed_is_not_averaged),
         cmocka_unit_test(maps_are_averaged_where_nothing_moved_and_only_there),
         cmocka_unit_test(a_patch_that_flickers_into_the_mask_is_not_shown),
     };

@@ -271,21 +271,35 @@ static void choose(object_search *s, const merlin_hint *hint)
 
 /* ---- from picture to picture ---- */
 
-/* Expects the object where it was: surely inside and outside, not within a few pixels of its outline. */
+/* Returns how much of the window around each pixel a mask covers. */
+static status covered_around(const img *mask, int radius, img *out)
+{
+    status st = img_copy(out, mask);
+    if (st == OK) st = img_box_sums(out, radius);
+    for (size_t i = 0; st == OK && i < img_value_count(out); i++)
+        out->data[i] /= (float)((2 * radius + 1) * (2 * radius + 1));
+    return st;
+}
+
+/* Expects the object where it was: surely inside, and surely not far outside. Near it, parts may appear that were dark
+ * or hidden before, and the outline may move. */
 static status find_prior_before(object_search *s, const img *before)
 {
-    enum { MOVES = 3 };
-    static const float MOST = 4;
-    img small = {0};
+    enum { MOVES = 3, NEAR = 10 };
+    static const float MOST = 4, LEAST_NEAR = 0, INNER = 0.6f;
+    img small = {0}, close = {0}, near = {0};
     status st = img_resize(before, s->view.width, s->view.height, &small);
-    for (size_t i = 0; st == OK && i < s->view.count; i++)
-        s->start[i] = small.data[i] >= 0.5f;
-    if (st == OK) st = img_box_sums(&small, MOVES);
+    if (st == OK) st = covered_around(&small, MOVES, &close);
+    if (st == OK) st = covered_around(&small, NEAR, &near);
     for (size_t i = 0; st == OK && i < s->view.count; i++) {
-        const float within = small.data[i] / ((2 * MOVES + 1) * (2 * MOVES + 1));
-        s->prior[i] = MOST * clamp(2 * within - 1, -1, 1);
+        s->start[i] = small.data[i] >= 0.5f;
+        const float toward = MOST * clamp(2 * close.data[i] - 1, -1, 1);
+        s->prior[i] = near.data[i] > 0.01f ? fmaxf(toward, LEAST_NEAR) : toward;
+        s->wanted[i] = close.data[i] > INNER; /* parts that shadows separate remain */
     }
     img_free(&small);
+    img_free(&close);
+    img_free(&near);
     return st;
 }
 
@@ -298,6 +312,9 @@ status object_search_follow(const img *photo, const img *before, object_search *
     ground.prior = out->prior;
     ground.away = out->away.data;
     ground.fixed = out->fixed;
+    if (st == OK) out->wanted = calloc(out->view.count, 1);
+    if (st == OK && !out->wanted) st = no_memory();
+    ground.wanted = out->wanted;
     if (st == OK) object_view_tie(&out->view, ground.tie, &ground.cut);
     if (st == OK) st = find_prior_before(out, before);
     if (st == OK) st = grow(out, &ground, false);
