@@ -49,7 +49,7 @@ function words_of_object({ trouble, confidence, reduced, photo }) {
 }
 
 function words_of_lens({ focal, photo }) {
-    if (!focal) return "The photograph does not tell its lens: horizontally, if you know it.";
+    if (!focal) return "The photograph does not tell its lens. If you know it, type its horizontal angle.";
     const degrees = (2 * Math.atan((photo.width * DIAGONAL) / (2 * focal * Math.hypot(photo.width, photo.height))) * 180) / Math.PI;
     byId("fov").placeholder = degrees.toFixed(1);
     return `By its EXIF: ${degrees.toFixed(1)} degrees horizontally.`;

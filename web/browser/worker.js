@@ -120,7 +120,7 @@ async function answer(told, run) {
 
 function words_of(error) {
     if (error instanceof RangeError || error instanceof WebAssembly.RuntimeError || /memory|alloc|abort/i.test(error.message))
-        return `There is not enough memory in this browser: close other tabs, or choose “Quick”. (${error.message})`;
+        return `There is not enough memory in this browser: close other tabs, load this page anew, or choose “Quick”. (${error.message})`;
     return error.message || String(error);
 }
 
