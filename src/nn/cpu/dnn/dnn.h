@@ -41,6 +41,8 @@ typedef struct dnn_convolution {
 } dnn_convolution;
 
 status dnn_describe(dnn_call *call, const dnn_context *context, const dnn_convolution *wanted);
+/* Tells whether the name of the implementation that was found has this part. */
+bool dnn_is_called(const dnn_call *call, const char *part);
 size_t dnn_scratch_bytes(const dnn_call *call);
 dnn_layout dnn_query(const dnn_call *call, dnnl_query_t what);
 /* Adds an argument whose data is at `data`. */

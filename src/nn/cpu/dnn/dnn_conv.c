@@ -17,7 +17,7 @@ typedef struct conv {
     dnn_call convert, convert_back, collect; /* weights to forward and backward-data; gradient from weights */
     dnn_shape plain;                         /* the float32 weights */
     void *folded_bias, *forward_weights, *data_weights, *weight_gradient;
-    bool has_bias;
+    bool has_bias, adds_behind; /* adds_behind: the sum and ReLU are computed here, behind the primitive */
 } conv;
 
 static dnn_shape weights_shape(const nn_step *step, nn_type type, dnnl_format_tag_t order)
@@ -53,6 +53,9 @@ static dnn_convolution convolution_of(const nn_step *step, dnnl_prop_kind_t kind
     };
 }
 
+/* Describes the forward primitive. Convolutions by matrix products, which oneDNN 2.6 falls back to where it has nothing
+ * for the processor (on arm64 always, on x86 without AVX2 for few channels), add another pixel's values than those
+ * asked for to channels-last results: there the sum is computed behind them. */
 static status describe_forward(nn_step *step, conv *state)
 {
     dnn_convolution wanted = convolution_of(step, step->train ? dnnl_forward_training : dnnl_forward_inference);
@@ -61,6 +64,11 @@ static status describe_forward(nn_step *step, conv *state)
     wanted.has_beside = step->inputs > 1;
     if (wanted.has_beside) wanted.beside = dnn_activation(&step->in[1], step->in[1].type);
     wanted.relu = step->relu;
+    status s = dnn_describe(&state->forward, step->context, &wanted);
+    state->adds_behind = s == OK && wanted.has_beside && dnn_is_called(&state->forward, "gemm");
+    if (!state->adds_behind) return s;
+    dnn_release(&state->forward);
+    wanted.has_beside = wanted.relu = false;
     return dnn_describe(&state->forward, step->context, &wanted);
 }
 
@@ -163,7 +171,7 @@ static status bind_forward(nn_step *step, conv *state)
     if (s == OK) s = dnn_argument(call, context, DNNL_ARG_WEIGHTS, w, state->forward_weights);
     if (s == OK && state->has_bias) s = dnn_argument_of(call, context, DNNL_ARG_BIAS, &b, bias_data(step));
     if (s == OK) s = dnn_argument_of(call, context, DNNL_ARG_DST, &y, step->out.data);
-    if (s == OK && step->inputs > 1) s = bind_beside(step, call);
+    if (s == OK && step->inputs > 1 && !state->adds_behind) s = bind_beside(step, call);
     return s == OK ? dnn_make(call, step->forward_space, context) : s;
 }
 
@@ -261,7 +269,11 @@ static status conv_refresh(nn_step *step)
 static status conv_forward(nn_step *step)
 {
     conv *state = step->state;
-    return dnn_run(&state->forward, step->context);
+    status s = dnn_run(&state->forward, step->context);
+    if (s != OK || !state->adds_behind) return s;
+    cpu_add(&step->out, &step->in[1], &step->out);
+    if (step->relu) cpu_relu(&step->out, &step->out);
+    return OK;
 }
 
 status conv_backward_data(nn_step *step)

@@ -124,11 +124,16 @@ static status make_attributes(dnnl_primitive_attr_t *attributes, const memories 
     return dnn_check(code, "attributes");
 }
 
-static bool is_called(dnnl_primitive_desc_t description, const char *part)
+static bool is_called(const_dnnl_primitive_desc_t description, const char *part)
 {
     const char *name = NULL;
     dnnl_primitive_desc_query(description, dnnl_query_impl_info_str, 0, (void *)&name);
     return name && strstr(name, part);
+}
+
+bool dnn_is_called(const dnn_call *call, const char *part)
+{
+    return is_called(call->description, part);
 }
 
 /* Describes the first implementation that is not to be avoided. */
