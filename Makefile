@@ -3,7 +3,7 @@
 MERLIN = build/release/merlin
 OUT = out/demo
 
-.PHONY: all build demo install wheel deb test-deb blender web test test-debian product asan debug check format fuzz setup-build setup-test setup-check setup-web clean
+.PHONY: all build demo install wheel deb test-deb arm64 test-arm64 blender web test test-debian product asan debug check format fuzz setup-build setup-test setup-check setup-web clean
 
 all: build
 
@@ -45,6 +45,16 @@ deb: setup-build
 # That package in a bare system of its own, as root.
 test-deb: deb
 	@tools/test-deb
+
+# The product and its tests for arm64, cross-built with what tools/install-arm64 installs.
+arm64:
+	@command -v aarch64-linux-gnu-gcc >/dev/null || { echo "merlin: there is no cross compiler for arm64: make test-arm64 makes a Debian with one" >&2; exit 1; }
+	cmake --preset arm64
+	cmake --build --preset arm64
+
+# The same in a bare system of its own, as root, and tried there.
+test-arm64: build
+	@tools/test-arm64
 
 # The Blender add-on as a zip, the same wherever it is made.
 blender:
