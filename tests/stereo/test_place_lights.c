@@ -9,6 +9,7 @@
 #include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
 #include "relief.h"
+#include "sanitized.h"
 #include "stereo/methods/place_lights.h"
 
 enum { SIZE = 40, LIGHTS = 8 };
@@ -112,6 +113,7 @@ static void places_explain_pictures_that_directions_do_not(void **state)
 static void another_camera_does_nearly_as_well(void **state)
 {
     (void)state;
+    shows_figures_alone();
     merlin_capture c;
     ball_capture(&c, false, true, 1);
     c.camera = pinhole_of(SIZE, SIZE, 60);

@@ -9,11 +9,12 @@
 
 #include "base/rng.h"
 #include "lab/scene/scene.h"
+#include "sanitized.h"
 
 /* last, as cmocka defines a macro named fail */
 #include <cmocka.h>
 
-enum { OBJECTS = 200 };
+enum { OBJECTS = SANITIZED ? 40 : 200 };
 
 static const float FOV = 60;
 

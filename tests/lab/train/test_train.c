@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include "sanitized.h"
 #include "train_fixture.h"
 
 /* Trains a run that starts from the weights in `begins`. */
@@ -61,6 +62,7 @@ static void loss_falls_to(const fixture *f, int column, double share)
 
 static void losses_fall_on_two_samples(void **state)
 {
+    shows_figures_alone();
     const fixture *f = *state;
     for (int i = 2; i < SAMPLES; i++) {
         char *path = sample_path(f->data, (uint64_t)i);
@@ -105,6 +107,7 @@ static void albedo_weighs_what_the_configuration_says(void **state)
 
 static void both_lights_can_be_learned(void **state)
 {
+    shows_figures_alone();
     const fixture *f = *state;
     write_experiment(f, &(experiment){96, 4, 0, "both", no_jitter, 100});
     if (train(f, "a", false, 0) != OK) fail_msg("%s", status_message());

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Resumed runs: from checkpoints, with less memory, by a configuration in parts, and what is refused. */
+#include "sanitized.h"
 #include "train_fixture.h"
 
 /* Asserts equal parameters, running statistics, moments, weights and curves. */
@@ -27,6 +28,7 @@ static void resumed_training_is_bit_identical(void **state)
 
 static void resumed_training_of_both_lights_is_bit_identical(void **state)
 {
+    shows_figures_alone();
     resume_and_compare(*state, "both", jitter);
 }
 
