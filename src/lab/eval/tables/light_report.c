@@ -7,21 +7,13 @@
 #include "base/text/report.h"
 #include "lab/eval/tables/light_table.h"
 
-typedef struct figure_words {
-    const char *heading, *key;
-    double factor; /* of the printed figure */
-    int decimals;
-} figure_words;
-
-static const figure_words words[LIGHT_FIGURES] = {
-    [LIGHT_ANGLE] = {"degrees", "normal_angle_degrees", 1, 2},
-    [LIGHT_ALBEDO] = {"albedo", "albedo_error", 100, 2},
-    [LIGHT_ALBEDO_FREE] = {"its scale free", "albedo_error_scale_free", 100, 2},
-    [LIGHT_ROUGHNESS] = {"roughness", "roughness_error", 100, 2},
-    [LIGHT_RELIEF] = {"relief", "relief_error", 100, 2},
-    [LIGHT_AS_FLASH] = {"as a flash", "seen_as_flash_alone", 1, 2},
-    [LIGHT_DIRECTION] = {"lamp's way", "light_direction_median_degrees", 1, 1},
-};
+/* Returns the names of a figure: those of all photographs are followed by those of the light found. */
+static const lit_words *words_of(int figure)
+{
+    static const lit_words of_light[] = {{"as a flash", "seen_as_flash_alone", 1},
+                                         {"lamp's way", "light_direction_median_degrees", 1}};
+    return figure < LIT_FIGURES ? &lit_figure_words[figure] : &of_light[figure - LIT_FIGURES];
+}
 
 static const char *const names[LIGHT_KINDS] = {"flash",
                                                "flash in a room",
@@ -48,7 +40,7 @@ void light_table_print(const light_table *t, FILE *stream)
     fprintf(stream, " on %zu samples; errors in 1e-2, relief in hundredths of the frame's width\n\n%-*s%*s", t->samples,
             LABEL, "light", CELL, "photographs");
     for (int f = 0; f < figures; f++)
-        fprintf(stream, "%*s", CELL, words[f].heading);
+        fprintf(stream, "%*s", CELL, words_of(f)->heading);
     for (int kind = 0; kind < LIGHT_KINDS; kind++) {
         if (t->count[kind] == 0) continue;
         fprintf(stream, "\n%-*s%*zu", LABEL, names[kind], CELL, t->count[kind]);
@@ -56,7 +48,7 @@ void light_table_print(const light_table *t, FILE *stream)
             if (isnan(t->mean[kind][f]))
                 fprintf(stream, "%*s", CELL, "-");
             else
-                fprintf(stream, "%*.*f", CELL, words[f].decimals, words[f].factor * t->mean[kind][f]);
+                fprintf(stream, "%*.*f", CELL, f == LIGHT_DIRECTION ? 1 : 2, words_of(f)->factor * t->mean[kind][f]);
         }
     }
     fprintf(stream, "\n\n%.1f s\n", t->seconds);
@@ -75,7 +67,7 @@ char *light_table_json(const light_table *t)
         cJSON *o = json_put_object(kinds, names[kind]);
         json_put_number(o, "photographs", (double)t->count[kind]);
         for (int f = 0; f < (t->directions ? LIGHT_FIGURES : LIGHT_AS_FLASH); f++)
-            if (!isnan(t->mean[kind][f])) json_put_number(o, words[f].key, t->mean[kind][f]);
+            if (!isnan(t->mean[kind][f])) json_put_number(o, words_of(f)->key, t->mean[kind][f]);
     }
     char *text = json_print_line(root);
     cJSON_Delete(root);

@@ -102,30 +102,23 @@ static status measure(run *r, const lit_subject *on, const lit_mixture *m, light
     return s;
 }
 
-static status measure_sample(run *r, const sample *s)
+static status measure_subject(void *context, const lit_subject *on)
 {
-    lit_subject on;
-    status st = lit_subject_new(s, &on);
-    if (st == OK) st = measure(r, &on, &(lit_mixture){1, 0, -1}, LIGHT_FLASH);
-    if (st == OK) st = measure(r, &on, &(lit_mixture){1, 0.5f, -1}, LIGHT_FLASH_IN_ROOM);
-    if (st == OK) st = measure(r, &on, &(lit_mixture){0, 1, -1}, LIGHT_ROOM);
+    run *r = context;
+    const sample *s = on->s;
+    status st = measure(r, on, &(lit_mixture){1, 0, -1}, LIGHT_FLASH);
+    if (st == OK) st = measure(r, on, &(lit_mixture){1, 0.5f, -1}, LIGHT_FLASH_IN_ROOM);
+    if (st == OK) st = measure(r, on, &(lit_mixture){0, 1, -1}, LIGHT_ROOM);
     for (int i = 0; i < s->lamp_count && st == OK; i++)
-        st = measure(r, &on, &(lit_mixture){0, 0, i}, kind_of_lamp(&s->lamps[i]));
-    if (st == OK) st = measure(r, &on, &(lit_mixture){0, 0.5f, 0}, LIGHT_LAMP_IN_ROOM);
-    lit_subject_free(&on);
+        st = measure(r, on, &(lit_mixture){0, 0, i}, kind_of_lamp(&s->lamps[i]));
+    if (st == OK) st = measure(r, on, &(lit_mixture){0, 0.5f, 0}, LIGHT_LAMP_IN_ROOM);
+    if (st == OK) r->table->samples++;
     return st;
 }
 
 static status measure_file(void *context, const char *path)
 {
-    run *r = context;
-    sample s;
-    status st = lit_sample_read(path, &s);
-    if (st != OK) return st;
-    st = measure_sample(r, &s);
-    if (st == OK) r->table->samples++;
-    sample_free(&s);
-    return st;
+    return lit_subject_measure(path, measure_subject, context);
 }
 
 static void finish(run *r)

@@ -14,28 +14,28 @@
  */
 static const float EXPOSED = 0.7f, BRIGHT_SHARE = 0.95f;
 
-status lit_sample_read(const char *path, sample *out)
+static status measure_sample(const sample *s, status (*measure)(void *context, const lit_subject *on), void *context)
 {
-    status s = sample_read(path, out);
-    if (s != OK || (out->lamp_count > 0 && out->env.data)) return s;
-    sample_free(out);
-    return fail(MERLIN_BAD_INPUT, "%s was rendered without lamps or without environment: render samples with --lamps",
-                path);
-}
-
-status lit_subject_new(const sample *s, lit_subject *out)
-{
-    *out = (lit_subject){.s = s};
-    status st = eval_binary_mask(&s->mask, &out->mask);
-    if (st == OK) st = eval_truth(s, &out->mask, &out->truth);
-    if (st != OK) lit_subject_free(out);
+    lit_subject on = {.s = s};
+    status st = eval_binary_mask(&s->mask, &on.mask);
+    if (st == OK) st = eval_truth(s, &on.mask, &on.truth);
+    if (st == OK) st = measure(context, &on);
+    img_free(&on.mask);
+    surface_free(&on.truth);
     return st;
 }
 
-void lit_subject_free(lit_subject *subject)
+status lit_subject_measure(const char *path, status (*measure)(void *context, const lit_subject *on), void *context)
 {
-    img_free(&subject->mask);
-    surface_free(&subject->truth);
+    sample s;
+    status st = sample_read(path, &s);
+    if (st != OK) return st;
+    if (s.lamp_count == 0 || !s.env.data)
+        st = fail(MERLIN_BAD_INPUT, "%s was rendered without lamps or without environment: render samples with --lamps",
+                  path);
+    if (st == OK) st = measure_sample(&s, measure, context);
+    sample_free(&s);
+    return st;
 }
 
 /* ---- the photograph ---- */
@@ -98,6 +98,14 @@ status lit_radiance(const lit_subject *on, const lit_mixture *m, img *out, float
 }
 
 /* ---- figures ---- */
+
+const lit_words lit_figure_words[LIT_FIGURES] = {
+    [LIT_ANGLE] = {"degrees", "normal_angle_degrees", 1},
+    [LIT_ALBEDO] = {"albedo", "albedo_error", 100},
+    [LIT_ALBEDO_FREE] = {"its scale free", "albedo_error_scale_free", 100},
+    [LIT_ROUGHNESS] = {"roughness", "roughness_error", 100},
+    [LIT_RELIEF] = {"relief", "relief_error", 100},
+};
 
 static double albedo_free(const img *albedo, const lit_subject *on)
 {

@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* A sample photographed under mixtures of the lights that it was rendered with, and figures of maps against its truth.
  *
- *     lit_subject on;
+ *     status s = lit_subject_measure(path, measure, &run);        with, in measure:
  *     img radiance;
  *     float white;
- *     status s = lit_subject_new(&sample, &on);
- *     if (s == OK) s = lit_radiance(&on, &(lit_mixture){.lamp = 2}, &radiance, &white);
+ *     status s = lit_radiance(on, &(lit_mixture){.lamp = 2}, &radiance, &white);
  *     ... maps of radiance / white ...
- *     lit_figures_add(&maps, &on, sum);
- *     lit_subject_free(&on); */
+ *     lit_figures_add(&maps, on, sum); */
 #ifndef MERLIN_LAB_EVAL_TABLES_LIT_SUBJECT_H
 #define MERLIN_LAB_EVAL_TABLES_LIT_SUBJECT_H
 
@@ -21,12 +19,10 @@ typedef struct lit_subject {
     surface truth;
 } lit_subject;
 
-/* Reads a sample. MERLIN_BAD_INPUT for one without lamps or environment. */
-status lit_sample_read(const char *path, sample *out);
-status lit_subject_new(const sample *s, lit_subject *out);
-void lit_subject_free(lit_subject *subject);
+/* Reads a sample and measures it, which is then freed again. MERLIN_BAD_INPUT for one without lamps or environment. */
+status lit_subject_measure(const char *path, status (*measure)(void *context, const lit_subject *on), void *context);
 
-/* What lights one photograph, and how much of each there is. */
+/* The lights of one photograph, and how much of each there is. */
 typedef struct lit_mixture {
     float flash, room; /* room: its mean over the object in that of the other light */
     int lamp;          /* -1: none */
@@ -44,6 +40,13 @@ typedef enum lit_figure {
     LIT_RELIEF,      /* root mean square error of depth, its mean apart, in widths of the frame */
     LIT_FIGURES
 } lit_figure;
+
+/* Names of the figures in tables and in JSON. */
+typedef struct lit_words {
+    const char *heading, *key;
+    double factor; /* of the printed figure */
+} lit_words;
+extern const lit_words lit_figure_words[LIT_FIGURES];
 
 void lit_figures_add(const surface *maps, const lit_subject *on, double sum[LIT_FIGURES]);
 

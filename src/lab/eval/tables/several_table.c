@@ -83,34 +83,27 @@ static status measure(const run *r, const lit_subject *on, const photographs *p,
     return s;
 }
 
-static status measure_sample(run *r, const sample *s)
+static status measure_subject(void *context, const lit_subject *on)
 {
-    lit_subject on;
+    run *r = context;
+    const sample *s = on->s;
     photographs all = {.how = {.lens = {s->fov, s->slant}}};
-    status st = lit_subject_new(s, &on);
-    if (st != OK) return st;
+    status st = OK;
     if (s->mask.width != NETWORK_SIZE || s->mask.height != NETWORK_SIZE)
         st = fail(MERLIN_BAD_INPUT, "samples of %d×%d pixels: render them with --size %d", s->mask.width,
                   s->mask.height, NETWORK_SIZE);
     for (int i = 0; i < s->lamp_count && i < MOST && st == OK; i++)
-        st = photograph(&on, i, &all);
+        st = photograph(on, i, &all);
     for (int row = 0; row < SEVERAL_ROWS && 1 << row <= all.count && st == OK; row++)
-        st = measure(r, &on, &all, row);
+        st = measure(r, on, &all, row);
+    if (st == OK) r->table->samples++;
     photographs_free(&all);
-    lit_subject_free(&on);
     return st;
 }
 
 static status measure_file(void *context, const char *path)
 {
-    run *r = context;
-    sample s;
-    status st = lit_sample_read(path, &s);
-    if (st != OK) return st;
-    st = measure_sample(r, &s);
-    if (st == OK) r->table->samples++;
-    sample_free(&s);
-    return st;
+    return lit_subject_measure(path, measure_subject, context);
 }
 
 static void finish(several_table *t)
@@ -143,17 +136,6 @@ status several_table_run(const several_options *options, several_table *out)
 
 /* ---- reports ---- */
 
-static const struct {
-    const char *heading, *key;
-    double factor; /* of the printed figure */
-} words[LIT_FIGURES] = {
-    [LIT_ANGLE] = {"degrees", "normal_angle_degrees", 1},
-    [LIT_ALBEDO] = {"albedo", "albedo_error", 100},
-    [LIT_ALBEDO_FREE] = {"its scale free", "albedo_error_scale_free", 100},
-    [LIT_ROUGHNESS] = {"roughness", "roughness_error", 100},
-    [LIT_RELIEF] = {"relief", "relief_error", 100},
-};
-
 enum { CELL = 16 };
 
 void several_table_print(const several_table *t, FILE *stream)
@@ -162,11 +144,11 @@ void several_table_print(const several_table *t, FILE *stream)
             t->model, t->together ? "" : ", the mean of its estimates,", t->samples, CELL, "photographs", CELL,
             "samples");
     for (int f = 0; f < LIT_FIGURES; f++)
-        fprintf(stream, "%*s", CELL, words[f].heading);
+        fprintf(stream, "%*s", CELL, lit_figure_words[f].heading);
     for (int row = 0; row < SEVERAL_ROWS && t->count[row] > 0; row++) {
         fprintf(stream, "\n%-*d%*zu", CELL, 1 << row, CELL, t->count[row]);
         for (int f = 0; f < LIT_FIGURES; f++)
-            fprintf(stream, "%*.2f", CELL, words[f].factor * t->mean[row][f]);
+            fprintf(stream, "%*.2f", CELL, lit_figure_words[f].factor * t->mean[row][f]);
     }
     fprintf(stream, "\n\n%.1f s\n", t->seconds);
 }
@@ -184,7 +166,7 @@ char *several_table_json(const several_table *t)
         cJSON *o = json_put_object(rows, name);
         json_put_number(o, "samples", (double)t->count[row]);
         for (int f = 0; f < LIT_FIGURES; f++)
-            json_put_number(o, words[f].key, t->mean[row][f]);
+            json_put_number(o, lit_figure_words[f].key, t->mean[row][f]);
     }
     char *text = json_print_line(root);
     cJSON_Delete(root);
