@@ -53,9 +53,8 @@ size_t layer_norm_partial_floats(int channels)
 }
 
 /* Computes dx of one pixel from w = weight·dy: (w - mean(w) - x̂·mean(w·x̂)) / deviation. */
-static void pixel_gradient(const float *x, const float *weight, const float *dy, size_t channels, float *dx)
+static void pixel_gradient(const float *x, pixel s, const float *weight, const float *dy, size_t channels, float *dx)
 {
-    const pixel s = statistics(x, channels);
     float sum = 0, product = 0;
 #pragma omp simd reduction(+ : sum, product)
     for (size_t c = 0; c < channels; c++) {
@@ -73,9 +72,8 @@ static void pixel_gradient(const float *x, const float *weight, const float *dy,
 }
 
 /* Adds one pixel's share to the gradients of weight and bias. */
-static void add_shares(const float *x, const float *dy, size_t channels, float *dweight, float *dbias)
+static void add_shares(const float *x, pixel s, const float *dy, size_t channels, float *dweight, float *dbias)
 {
-    const pixel s = statistics(x, channels);
 #pragma omp simd
     for (size_t c = 0; c < channels; c++) {
         dweight[c] += dy[c] * ((x[c] - s.mean) * s.inverse_deviation);
@@ -97,10 +95,11 @@ void cpu_layer_norm_backward(const cpu_tensor *x, layer_norm_params params, cons
             float room_x[CPU_MAX_CHANNELS], room_dy[CPU_MAX_CHANNELS], room[CPU_MAX_CHANNELS];
             const float *p = cpu_load(x, i * channels, channels, room_x);
             const float *d = cpu_load(dy, i * channels, channels, room_dy);
-            add_shares(p, d, channels, dweight, dbias);
+            const pixel s = statistics(p, channels);
+            add_shares(p, s, d, channels, dweight, dbias);
             if (!dx->data) continue;
             float *q = cpu_target(dx, i * channels, room, accumulate);
-            pixel_gradient(p, params.weight, d, channels, q);
+            pixel_gradient(p, s, params.weight, d, channels, q);
             cpu_store(dx, i * channels, channels, q, accumulate);
         }
     }
