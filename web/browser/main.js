@@ -3,7 +3,7 @@
 import { zipSync } from "./fflate.js";
 import { Estimator } from "./estimator.js";
 import { correct } from "./mask.js";
-import { byId, bytes, make, say } from "./parts.js";
+import { byId, bytes, make, say, take_drops } from "./parts.js";
 
 const MAPS = [["albedo.png", "Albedo"], ["normal.png", "Normals"], ["roughness.png", "Roughness"], ["depth.png", "Depth"], ["reconstruction.png", "Reconstruction"], ["mask.png", "Mask"]];
 const TYPES = { png: "image/png", html: "text/html", json: "application/json", exr: "image/x-exr" };
@@ -182,21 +182,7 @@ byId("correct").addEventListener("click", repaint);
 byId("estimate").addEventListener("click", estimate);
 byId("cancel").addEventListener("click", () => estimator.call("cancel"));
 
-const carries_files = (e) => e.dataTransfer?.types.includes("Files");
-for (const kind of ["dragenter", "dragover"])
-    addEventListener(kind, (e) => {
-        if (!carries_files(e)) return;
-        e.preventDefault();
-        byId("drop").classList.add("over");
-    });
-addEventListener("dragleave", (e) => { if (!e.relatedTarget) byId("drop").classList.remove("over"); });
-addEventListener("drop", (e) => {
-    if (!carries_files(e)) return;
-    e.preventDefault();
-    byId("drop").classList.remove("over");
-    const [file] = e.dataTransfer.files;
-    if (file && !byId("mask").open && !byId("files").disabled) take(file);
-});
+take_drops(([file]) => { if (file && !byId("mask").open && !byId("files").disabled) take(file); });
 
 async function start() {
     byId("files").disabled = true;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 import { status } from "./api.js";
 import { Card } from "./card.js";
-import { byId, bytes } from "./parts.js";
+import { byId, bytes, take_drops } from "./parts.js";
 
 let limits = { bytes: Infinity, files: Infinity };
 const hints = {
@@ -47,20 +47,7 @@ byId("files").addEventListener("change", (e) => {
 for (const radio of document.querySelectorAll("input[name=what]"))
     radio.addEventListener("change", () => { [byId("drop-words").textContent, byId("hint").textContent] = hints[what()]; });
 
-const carries_files = (e) => e.dataTransfer?.types.includes("Files");
-for (const kind of ["dragenter", "dragover"])
-    addEventListener(kind, (e) => {
-        if (!carries_files(e)) return;
-        e.preventDefault();
-        byId("drop").classList.add("over");
-    });
-addEventListener("dragleave", (e) => { if (!e.relatedTarget) byId("drop").classList.remove("over"); });
-addEventListener("drop", (e) => {
-    if (!carries_files(e)) return;
-    e.preventDefault();
-    byId("drop").classList.remove("over");
-    if (!byId("mask").open) take([...e.dataTransfer.files]);
-});
+take_drops((files) => { if (!byId("mask").open) take(files); });
 
 status().then((told) => {
     limits = told.limits;

@@ -23,3 +23,22 @@ export function bytes(count) {
     if (count < 1000) return `${count} B`;
     return count < 1e6 ? `${(count / 1e3).toFixed(0)} kB` : `${(count / 1e6).toFixed(1)} MB`;
 }
+
+const carries_files = (e) => e.dataTransfer?.types.includes("Files");
+
+// Calls take with files that are dropped anywhere on the page; #drop shows that they can be.
+export function take_drops(take) {
+    for (const kind of ["dragenter", "dragover"])
+        addEventListener(kind, (e) => {
+            if (!carries_files(e)) return;
+            e.preventDefault();
+            byId("drop").classList.add("over");
+        });
+    addEventListener("dragleave", (e) => { if (!e.relatedTarget) byId("drop").classList.remove("over"); });
+    addEventListener("drop", (e) => {
+        if (!carries_files(e)) return;
+        e.preventDefault();
+        byId("drop").classList.remove("over");
+        take([...e.dataTransfer.files]);
+    });
+}
