@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/number.h"
+#include "base/vec.h"
 #include "image/resize.h"
 #include "sequence/sequence_exposure.h"
 
@@ -153,13 +154,6 @@ static void mean_of(const img *before, img *now, size_t pixel, float kept, bool 
     }
 }
 
-static void make_unit(float *n)
-{
-    const float length = sqrtf(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    for (int c = 0; c < 3 && length > 0; c++)
-        n[c] /= length;
-}
-
 /* Copies a pixel's values into the history. */
 static void keep(img *average, const img *now, size_t pixel)
 {
@@ -197,7 +191,8 @@ static void blend_pixel(sequence_history *h, size_t i, float kept, bool keep_mas
     maps->mask.data[i] = cover;
     for (size_t k = 0; k < 4; k++) {
         mean_of(averages[k], images[k], i, kept, was, is);
-        if (k == 3) make_unit(maps->normal.data + 3 * i);
+        if (images[k] == &maps->normal)
+            vec3_put(vec3_normalize(vec3_of(maps->normal.data + 3 * i)), maps->normal.data + 3 * i);
         keep(averages[k], images[k], i);
         if (cover == 0) clear(images[k], i);
     }
