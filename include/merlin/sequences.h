@@ -38,7 +38,7 @@ typedef enum merlin_frame_object {
     MERLIN_OBJECT_LOST,     /* not found again: taken to be where it was expected */
 } merlin_frame_object;
 
-/* How a frame was processed. */
+/* Facts about how a frame was processed. */
 typedef struct merlin_frame_facts {
     long number;
     merlin_frame_object object;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What merlin estimate was asked for, and the files of one photograph or frame. */
+/* The request to merlin estimate, and the files of one photograph or frame. */
 #ifndef MERLIN_CLI_ESTIMATE_WRITE_H
 #define MERLIN_CLI_ESTIMATE_WRITE_H
 

@@ -4,7 +4,7 @@
 #include <stdio.h>
 
 enum { NAME = 96 };
-/* Of attention among pictures. */
+/* Numbers of heads and of channels a head of attention among pictures. */
 enum { HEADS = 4, HEAD_WIDTH = 32 };
 
 /* Writes "a.b" to the caller's buffer; the graph copies names. */

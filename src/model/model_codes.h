@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What a network's inputs and outputs mean, as numbers: encodings that need no graph. */
+/* Encodings of a network's inputs and outputs as numbers, which need no graph. */
 #ifndef MERLIN_MODEL_MODEL_CODES_H
 #define MERLIN_MODEL_MODEL_CODES_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* How spherical harmonics are scaled inside the network, by band: for model_encode_sh, its inverse, and the graph. */
+/* Scales of spherical harmonics inside the network, by band: for model_encode_sh, its inverse, and the graph. */
 #ifndef MERLIN_MODEL_SH_BANDS_H
 #define MERLIN_MODEL_SH_BANDS_H
 

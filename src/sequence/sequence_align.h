@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* How far an object moved between two frames, by whole pixels. */
+/* An object's movement between two frames, by whole pixels. */
 #ifndef MERLIN_SEQUENCE_SEQUENCE_ALIGN_H
 #define MERLIN_SEQUENCE_SEQUENCE_ALIGN_H
 

@@ -8,7 +8,7 @@
 #include "merlin/maps.h"
 #include "sequence/sequence_align.h"
 
-/* What is known of the frames before, at the places where the object is now. */
+/* Averages of the frames before, at the places where the object is now. */
 typedef struct sequence_history {
     img albedo, normal, roughness, depth, mask, reconstruction; /* averages */
     img seen;                                                   /* average picture, encoded and exposed */

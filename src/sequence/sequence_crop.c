@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-/* How far the average may be from the square in use, as shares of its side: less is nothing that the network sees, more
- * would cost resolution. */
+/* Limits of the distance between average and square in use, as shares of its side: less is nothing that the network
+ * sees, more would cost resolution. */
 static const float MOST_ASIDE = 0.015f, MOST_LARGER = 0.04f;
 /* A frame that is seen whole is still while the object is at least as long as this share of it. */
 static const float LEAST_OF_WHOLE = 0.5f;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What a run under sanitizers does less of. It finds bad accesses and undefined arithmetic, which cases that take the
- * same ways through the program with other numbers do not show again, and it takes ten times as long.
+/* Work that a run under sanitizers leaves out or shortens. It finds bad accesses and undefined arithmetic, which cases
+ * that take the same ways through the program with other numbers do not show again, and it takes ten times as long.
  *
  *     enum { OBJECTS = SANITIZED ? 40 : 200 };
  *     static void a_lens_is_named(void **state) { shows_figures_alone(); ... }     other cases go the same way */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* How much of an object is burnt out or black in pictures of it under other light.
+/* Shares of an object that are burnt out or black in pictures of it under other light.
  *
  *     relit_light seen = {0};
  *     relit_light_note(&seen, &picture, &mask);                      each picture

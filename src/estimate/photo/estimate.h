@@ -11,7 +11,7 @@
 status estimate_with_cues(merlin_model *model, merlin_image *photo, merlin_object *object, const merlin_params *params,
                           light_cues *cues, merlin_maps *maps);
 
-/* What frames of a sequence have in common, instead of what each would get on its own. */
+/* Choices that frames of a sequence have in common, instead of what each would get on its own. */
 typedef struct estimate_held {
     crop_square crop;  /* holds the object; with side 0 it is chosen */
     const char *model; /* name of the network, of a pair; NULL: chosen */

@@ -155,7 +155,7 @@ static status add_faults(const train_loader *l, const item *it, train_camera *le
     return train_motion_moves(&motion) ? train_move(&it->view, &motion) : OK;
 }
 
-/* What all pictures of an object share. */
+/* Choices that all pictures of an object share. */
 typedef struct shared {
     vec3 target;
     int orientation;

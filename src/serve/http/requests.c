@@ -25,7 +25,7 @@ enum { LONGEST_IGNORED = 64 << 10 };
 /* ---- resources ---- */
 
 static const char PAGE[] = "/", DESCRIPTION[] = "/v1/openapi.json", STATUS[] = "/v1/status", JOBS[] = "/v1/jobs/";
-/* What follows a job's identifier. */
+/* The rest of a path behind a job's identifier. */
 static const char FILES[] = "/files/", ARCHIVE[] = "/files.zip";
 
 static const work_kind *kind_of(const char *url)

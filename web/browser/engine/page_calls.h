@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the page's worker (web/browser/engine.js) calls, and what it is called for: libmerlin's estimate of one
+/* Calls between the page's worker (web/browser/engine.js) and libmerlin's estimate of one
  * photograph at a time, whose networks the browser runs. Texts are UTF-8, ended by a zero; pictures have 8 bits. */
 #ifndef MERLIN_BROWSER_PAGE_CALLS_H
 #define MERLIN_BROWSER_PAGE_CALLS_H

@@ -11,7 +11,7 @@
 
 enum { NETWORKS_MOST = 4, RUNS_MOST = 32, NAME = 64 };
 
-/* What is known of a network: its values, sides of which are not known yet. */
+/* A network as far as it is known: its values, sides of which are not known yet. */
 typedef struct description {
     char name[NAME];
     network_run values;
