@@ -190,8 +190,9 @@ static status fill_any(train_loader *l, item *it)
     if (s == OK && !l->validation) s = add_faults(l, it, &lens);
     if (s != OK) return s;
     train_mixture mixture;
-    train_mixture_draw(&it->view, &light, &lens, &mixture);
-    if (it->presentation != it->first && !l->validation) move_hand(l, it, &mixture);
+    const bool further = it->presentation != it->first;
+    train_mixture_draw(&it->view, &light, further, &lens, &mixture);
+    if (further && !l->validation) move_hand(l, it, &mixture);
     if (!l->validation) train_camera_add_response(&light, &lens);
     return train_prepare_any(&it->view, &mixture, &lens, common.target, &r);
 }

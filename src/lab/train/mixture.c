@@ -175,12 +175,13 @@ static vec3 color_of(const train_view *v, const means *m, const train_mixture *m
     return sum;
 }
 
-void train_mixture_draw(const train_view *v, rng *r, train_camera *lens, train_mixture *out)
+void train_mixture_draw(const train_view *v, rng *r, bool further, train_camera *lens, train_mixture *out)
 {
     const means m = measure(v);
     float which = rng_uniform(r), target = expf(rng_range(r, DARKEST, BRIGHTEST)), share = rng_range(r, 0.5f, 1);
     bool known = rng_uniform(r) < 0.75f, told = rng_uniform(r) < 0.5f;
-    *out = (train_mixture){.kind = which < 1.0f / 3 ? TRAIN_FLASH : which < 0.5f ? TRAIN_ROOM : TRAIN_MIXED};
+    const train_kind kind = which < 1.0f / 3 ? TRAIN_FLASH : which < 0.5f ? TRAIN_ROOM : TRAIN_MIXED;
+    *out = (train_mixture){.kind = further ? TRAIN_MIXED : kind};
     if (out->kind == TRAIN_FLASH) out->flash = vec3_make(1, 1, 1);
     if (out->kind == TRAIN_ROOM) out->room = vec3_make(1, 1, 1);
     if (out->kind == TRAIN_MIXED) draw_mixed(v, &m, r, out);

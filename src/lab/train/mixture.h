@@ -3,7 +3,7 @@
  * surroundings. Light is additive, so that any mixture is exact.
  *
  *     train_mixture m;
- *     train_mixture_draw(&view, &rng, &lens, &m);
+ *     train_mixture_draw(&view, &rng, false, &lens, &m);
  *     status s = train_prepare_any(&view, &m, &lens, target, &rng);      after train_dataset_get
  *
  * The light that the network has to predict is stored beside the maps: see model.h, "lighting": "any". */
@@ -25,9 +25,10 @@ typedef struct train_mixture {
     float shift[2];                      /* of the picture to the right and downwards, pixels */
 } train_mixture;
 
-/* Chooses a mixture. lens: as set by train_camera_draw; its gain becomes that of the exposure and white balance which a
- * camera chooses. */
-void train_mixture_draw(const train_view *v, rng *r, train_camera *lens, train_mixture *out);
+/* Chooses a mixture. further: of an object that has a picture already, which the same flash or surroundings alone would
+ * only repeat, so that it is a mixed one. lens: as set by train_camera_draw; its gain becomes that of the exposure and
+ * white balance which a camera chooses. */
+void train_mixture_draw(const train_view *v, rng *r, bool further, train_camera *lens, train_mixture *out);
 
 /* Chooses how far the hand that holds the camera has moved since the object's first picture. steady: a generator that
  * all its pictures share, as a third of all cameras stand on something; r: the picture's own. */
