@@ -40,7 +40,14 @@ static nn_node *residual_blocks(nn_graph *g, nn_node *x, const char *name, const
     return x;
 }
 
-/* Adds block_conv of the packed picture; a side input joins through a convolution that is zero until it is trained. */
+/* Adds a full-size side input of the first layer to y, through a convolution that is zero until it is trained. */
+static nn_node *join_beside(nn_graph *g, nn_node *y, nn_node *beside, const char *name, int kernel, int width)
+{
+    nn_node *packed = nn_space_to_depth(g, nn_compute(g, beside), 2);
+    return nn_add(g, y, nn_conv2d_zero(g, packed, name, width, kernel, 1, NN_NO_BIAS));
+}
+
+/* Adds block_conv of the packed picture, with its side inputs. */
 static nn_node *first_layer(nn_graph *g, nn_node *x, const char *level, const char *name,
                             const block_encoder_shape *shape)
 {
@@ -48,9 +55,9 @@ static nn_node *first_layer(nn_graph *g, nn_node *x, const char *level, const ch
     join(own, level, "a");
     if (!shape->beside) return block_conv(g, x, own, shape->widths[0], 1);
     nn_node *y = nn_conv2d(g, x, join(buffer, own, "conv"), shape->widths[0], 3, 1, NN_NO_BIAS);
-    nn_node *beside = nn_space_to_depth(g, nn_compute(g, shape->beside), 2);
-    beside = nn_conv2d_zero(g, beside, join(buffer, name, "beside"), shape->widths[0], 1, 1, NN_NO_BIAS);
-    return nn_relu(g, nn_batch_norm(g, nn_add(g, y, beside), join(buffer, own, "norm")));
+    y = join_beside(g, y, shape->beside, join(buffer, name, "beside"), 1, shape->widths[0]);
+    if (shape->share) y = join_beside(g, y, shape->share, join(buffer, name, "share"), 3, shape->widths[0]);
+    return nn_relu(g, nn_batch_norm(g, y, join(buffer, own, "norm")));
 }
 
 void block_encoder(nn_graph *g, nn_node *x, const char *name, const block_encoder_shape *shape,

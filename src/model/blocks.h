@@ -17,6 +17,7 @@ nn_node *block_residual(nn_graph *g, nn_node *x, const char *name, int width);
 typedef struct block_encoder_shape {
     const int *widths, *blocks; /* MODEL_LEVELS of each; blocks NULL: none */
     nn_node *beside;            /* full-size side input of the first layer (`name.beside.*`); NULL: none */
+    nn_node *share;             /* another one, each pixel's share of the pictures' light (`name.share.*`) */
     bool several;               /* pictures of an object exchange what they see at every level (block_exchange) */
 } block_encoder_shape;
 

@@ -238,7 +238,8 @@ static void encode(network *n)
     nn_graph *g = n->g;
     const model_config *c = n->config;
     nn_node *parts[2] = {nn_input(g, "image", 3, 1), c->several ? nn_group_repeat(g, n->mask) : n->mask};
-    const block_encoder_shape shape = {c->widths, c->encoder_blocks, n->sight, c->several};
+    nn_node *share = c->several ? nn_input(g, "share", 1, 1) : NULL;
+    const block_encoder_shape shape = {c->widths, c->encoder_blocks, n->sight, share, c->several};
     block_encoder(g, nn_concat(g, parts, 2), "encoder", &shape, n->seen);
     for (int i = 0; i < MODEL_LEVELS; i++) {
         char name[32];

@@ -36,7 +36,8 @@
  * "environment" and "visibility".
  *
  * With "several" the batch consists of objects with several such photographs each (nn.h, "several pictures of an
- * object"), taken from one place. Inputs and outputs that belong to a photograph are "image", "sight", "lights",
+ * object"), taken from one place. Additional is the input "share" 1 (model_encode_shares). Inputs and outputs that
+ * belong to a photograph are "image", "sight", "share", "lights",
  * "visibility", and the truth and weights of the latter two; all others are one for each object. With one photograph
  * the network is that of "lighting": "any" until it is trained. */
 #ifndef MERLIN_MODEL_MODEL_H

@@ -55,3 +55,33 @@ int model_light_size(const model_config *config)
 {
     return config->lighting == MODEL_LIGHT_BOTH ? 3 + MODEL_SH : 3;
 }
+
+/* Returns the sum of the channels' radiance, of a pixel of the input "image". */
+static float light_of(const float *encoded)
+{
+    return encoded[0] * encoded[0] + encoded[1] * encoded[1] + encoded[2] * encoded[2];
+}
+
+void model_encode_shares(const float *images, int pictures, size_t pixels, float *shares)
+{
+    for (int k = 0; k < pictures; k++) {
+        const float *image = images + 3 * pixels * (size_t)k;
+        float *light = shares + pixels * (size_t)k;
+        double sum = 0;
+        for (size_t i = 0; i < pixels; i++)
+            sum += (double)(light[i] = light_of(image + 3 * i));
+        const float scale = sum > 0 ? (float)((double)pixels / sum) : 0;
+        for (size_t i = 0; i < pixels; i++)
+            light[i] *= scale;
+    }
+    for (size_t i = 0; i < pixels; i++) {
+        float squares = 0;
+        for (int k = 0; k < pictures; k++)
+            squares += shares[pixels * (size_t)k + i] * shares[pixels * (size_t)k + i];
+        const float mean = sqrtf(squares / (float)pictures);
+        for (int k = 0; k < pictures; k++) {
+            float *share = &shares[pixels * (size_t)k + i];
+            *share = mean > 0 && pictures > 1 ? *share / mean - 1 : 0;
+        }
+    }
+}

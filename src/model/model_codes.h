@@ -32,6 +32,12 @@ float model_decode_strength(float code);
 enum { MODEL_SIGHT = 4 };
 void model_sight(const camera *lens, bool flash, int size, float *out);
 
+/* Fills in the input "share" of an object's pictures, one value a pixel: a picture's light there over the root mean
+ * square of all pictures' light, less 1, which does without the albedo of a matte surface; each picture's light is
+ * measured by its mean, as exposures differ. 0 where no picture has light, and in a single picture. images: the inputs
+ * "image" of the pictures one behind another, of so many pixels each. */
+void model_encode_shares(const float *images, int pictures, size_t pixels, float *shares);
+
 /* Returns the length of the lighting code: 3 or 30. */
 int model_light_size(const model_config *config);
 

@@ -25,6 +25,8 @@ struct train_loader {
     size_t batch;
     item *items;
     float *light_code;     /* the program's input "light", or NULL */
+    float *shares;         /* its input "share", or NULL */
+    const float *images;   /* its input "image" */
     float *spare[BUFFERS]; /* for targets that are no inputs of the model */
 };
 
@@ -102,6 +104,8 @@ status train_loader_new(nn_program *program, const train_source *source, train_l
     for (int i = 0; i < buffer_count(source) && s == OK; i++)
         s = connect(l, program, i);
     l->light_code = nn_input_data(program, "light");
+    l->shares = nn_input_data(program, "share");
+    l->images = nn_input_data(program, "image");
     if (s != OK) {
         train_loader_free(l);
         return s;
@@ -213,10 +217,20 @@ static status fill_item(void *context, size_t i)
     return s == OK ? train_prepare(&it->view, l->source.input_global, &lens, &lighting, &r) : s;
 }
 
+/* Fills in an object's "share", once its pictures are there. */
+static void fill_shares(void *context, size_t object)
+{
+    train_loader *l = context;
+    const size_t size = (size_t)l->source.config->size, pixels = size * size;
+    const size_t first = object * (size_t)l->source.pictures * pixels;
+    model_encode_shares(l->images + 3 * first, l->source.pictures, pixels, l->shares + first);
+}
+
 static status fill(train_loader *l)
 {
     status s = parallel_try(l->batch, fill_item, l);
     if (s != OK) return s;
+    if (l->shares) parallel_for(l->batch / (size_t)l->source.pictures, fill_shares, l);
     size_t code = l->source.environment ? 3 + MODEL_SH : 3;
     for (size_t i = 0; i < l->batch && l->light_code; i++) {
         memcpy(l->light_code + code * i, l->items[i].view.light, 3 * sizeof(float));
