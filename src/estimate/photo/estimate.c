@@ -25,10 +25,13 @@
 /* Intermediate images of one run: `crop` at the photograph's resolution, `low` at the network's; detail.h may have
  * enlarged the maps of `low`. */
 typedef struct work {
-    const merlin_params *params;
+    const merlin_params *params; /* NULL before estimate_photo: the defaults */
+    merlin_params usual;
     img photo, mask;     /* the photograph, whose pixels are released once the crop is taken */
     merlin_image *owned; /* the photograph, if this run must free it; else NULL */
     estimate_held held;  /* zeros: nothing */
+    estimate_further further;
+    img *low_photos; /* of several photographs: all of them at the network's resolution, else NULL */
     crop_square crop;
     sight how;
     img crop_photo, crop_mask;
@@ -46,6 +49,9 @@ static void work_free(work *w)
     img *images[] = {&w->mask, &w->crop_photo, &w->crop_mask, &w->low_photo, &w->low_mask, &w->reconstruction};
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
         img_free(images[i]);
+    for (int i = 1; w->low_photos && i <= w->further.count; i++)
+        img_free(&w->low_photos[i]);
+    free(w->low_photos);
     network_estimation_free(&w->low);
     surface_free(&w->full);
 }
@@ -149,7 +155,47 @@ static status make_input(work *w, merlin_maps *maps)
         w->params->auto_exposure ? exposure_gain(&w->low_photo, &w->low_mask) : exposure_from_ev(w->params->exposure);
     if (w->held.gain > 0) maps->gain = w->held.gain * powf(maps->gain / w->held.gain, w->held.new_share);
     input_expose(&w->low_photo, maps->gain);
-    return OK;
+    return make_all_further(w);
+}
+
+/* Makes what the network sees of a further photograph. */
+static status make_further(work *w, int number)
+{
+    img photo = {0}, crop_photo = {0}, seen = {0}, *low = &w->low_photos[1 + number];
+    status s = w->further.take(w->further.context, number, &photo);
+    if (s == OK && (photo.width != w->photo.width || photo.height != w->photo.height || photo.channels != 3))
+        s = fail(MERLIN_BAD_INPUT, "photograph %d has %d × %d pixels, the first one %d × %d", number + 2, photo.width,
+                 photo.height, w->photo.width, w->photo.height);
+    if (s == OK) s = crop_take(&photo, w->crop, NULL, &crop_photo);
+    img_free(&photo);
+    if (s == OK) s = input_make(&crop_photo, &w->crop_mask, w->low_photo.width, low, &seen);
+    if (s == OK) input_expose(low, exposure_gain(low, &w->low_mask));
+    img_free(&crop_photo);
+    img_free(&seen);
+    return s;
+}
+
+/* Makes those of all photographs. */
+static status make_all_further(work *w)
+{
+    const int count = w->further.count;
+    if (count == 0) return OK;
+    w->low_photos = calloc((size_t)count + 1, sizeof *w->low_photos);
+    if (!w->low_photos) return fail(MERLIN_NO_MEMORY, "no memory for %d photographs", count + 1);
+    w->low_photos[0] = w->low_photo;
+    status s = OK;
+    for (int i = 0; i < count && s == OK; i++)
+        s = w->params->stop && w->params->stop() ? fail(MERLIN_STOPPED, "stopped") : make_further(w, i);
+    return s;
+}
+
+static status run_network(network *n, work *w)
+{
+    const merlin_params *p = w->params;
+    if (!w->low_photos)
+        return network_estimate(n, &w->low_photo, &w->low_mask, &w->how, p->views, p->stop, &w->low);
+    return network_estimate_several(n, w->low_photos, 1 + w->further.count, &w->low_mask, &w->how, p->views, p->stop,
+                                    w->further.lights, &w->low);
 }
 
 static status follow_mean(network *n, work *w)
@@ -268,6 +314,7 @@ static status lap_compile(const merlin_model *model, work *w, double *seconds)
 static status prepare(const merlin_model *model, network *n, work *w, merlin_maps *maps)
 {
     const int views = w->params->views;
+    if (w->further.count) return OK; /* its program depends on their number */
     status s = views > 1 && !w->params->last ? network_prepare_bounces(n, maps->size) : OK;
     if (s == OK) s = network_prepare(n, maps->size, views);
     return s == OK ? lap_compile(model, w, &maps->timing.compile) : s;
@@ -289,9 +336,14 @@ static status prepare_finer(const merlin_model *model, network *n, work *w, int 
     return s == OK ? lap_compile(model, w, &maps->timing.compile) : s;
 }
 
-/* Chooses between the networks of a pair; name: that of the one that was chosen before, or NULL. */
-static status choose_network(const merlin_model *model, const light_question *asked, const char *name, network **n)
+/* Chooses between the networks of a pair, of which none for flashes sees several photographs. */
+static status choose_network(const merlin_model *model, const light_question *asked, const work *w, network **n)
 {
+    const char *name = w->held.model;
+    if (w->further.count) {
+        *n = model->network;
+        return OK;
+    }
     if (!name) return light_choice(model->network, model->flash, asked, n);
     *n = model->flash && strcmp(network_config(model->flash)->name, name) == 0 ? model->flash : model->network;
     return OK;
@@ -303,18 +355,18 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     merlin_timing *t = &maps->timing;
     w->clock = clock_seconds();
     watch_tell(&w->watch, "estimating", 0);
-    const int views = w->params->views, finer = detail_side(w->params->size, w->crop.side);
+    const int finer = w->further.count ? 0 : detail_side(w->params->size, w->crop.side);
     status s = make_input(w, maps);
     if (s == OK) s = lap(w, &t->prepare);
     const light_question asked = {&w->low_photo, &w->low_mask, &w->how, w->params->shot.flash};
-    if (s == OK) s = choose_network(model, &asked, w->held.model, &n);
+    if (s == OK) s = choose_network(model, &asked, w, &n);
     if (s != OK) return s;
     snprintf(maps->model, sizeof maps->model, "%s", network_config(n)->name);
     s = lap(w, &t->choose);
     if (s == OK) s = lap_compile(model, w, &t->compile);
     if (w->params->last) model_keep(model, n);
     if (s == OK) s = prepare(model, n, w, maps);
-    if (s == OK) s = network_estimate(n, &w->low_photo, &w->low_mask, &w->how, views, w->params->stop, &w->low);
+    if (s == OK) s = run_network(n, w);
     if (s == OK) s = lap(w, &t->network);
     if (s == OK) s = prepare_bounces(model, n, w, maps);
     maps->has_environment = network_config(n)->lighting == MODEL_LIGHT_BOTH;
@@ -338,25 +390,22 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     return s;
 }
 
-/* Estimates a photograph. owned: photo, if it is to be freed; or NULL. held: NULL for nothing. */
-static status estimate_photo(merlin_model *model, const merlin_image *photo, merlin_image *owned, merlin_object *object,
-                             const merlin_params *params, const estimate_held *held, light_cues *cues,
-                             merlin_maps *maps)
+/* Estimates what the run was begun with: photo and, of owned, params, held and further, what is not zero. */
+static status estimate_photo(merlin_model *model, work *w, merlin_object *object, merlin_maps *maps)
 {
     *maps = (merlin_maps){0};
-    merlin_params defaults = merlin_params_default();
-    const merlin_params *p = params ? params : &defaults;
-    work w = {.params = p, .photo = *photo, .owned = owned, .watch = {p->progress, p->progress_context, p->stop}};
-    if (held) w.held = *held;
+    w->usual = merlin_params_default();
+    if (!w->params) w->params = &w->usual;
+    const merlin_params *p = w->params;
+    w->watch = (watch){p->progress, p->progress_context, p->stop};
     maps->size = network_side(p->size);
-    status s = take_object(&w, object, maps);
+    status s = take_object(w, object, maps);
     if (s == OK) s = params_check(p);
-    if (s == OK) s = find_crop(&w, maps);
-    if (s == OK) find_lens(&w, maps);
-    if (s == OK) s = estimate(model, &w, maps);
-    if (cues) *cues = w.cues;
-    work_free(&w);
-    if (owned) merlin_image_free(owned);
+    if (s == OK) s = find_crop(w, maps);
+    if (s == OK) find_lens(w, maps);
+    if (s == OK) s = estimate(model, w, maps);
+    work_free(w);
+    if (w->owned) merlin_image_free(w->owned);
     merlin_object_free(object);
     if (s != OK) merlin_maps_free(maps);
     return s;
@@ -365,13 +414,25 @@ static status estimate_photo(merlin_model *model, const merlin_image *photo, mer
 status estimate_with_cues(merlin_model *model, merlin_image *photo, merlin_object *object, const merlin_params *params,
                           light_cues *cues, merlin_maps *maps)
 {
-    return estimate_photo(model, photo, photo, object, params, NULL, cues, maps);
+    work w = {.photo = *photo, .owned = photo, .params = params};
+    status s = estimate_photo(model, &w, object, maps);
+    *cues = w.cues;
+    return s;
 }
 
 status estimate_with_held(merlin_model *model, merlin_image *photo, merlin_object *object, const merlin_params *params,
                           const estimate_held *held, merlin_maps *maps)
 {
-    return estimate_photo(model, photo, photo, object, params, held, NULL, maps);
+    work w = {.photo = *photo, .owned = photo, .params = params};
+    if (held) w.held = *held;
+    return estimate_photo(model, &w, object, maps);
+}
+
+status estimate_several(merlin_model *model, const merlin_image *photo, merlin_object *object,
+                        const merlin_params *params, const estimate_further *further, merlin_maps *maps)
+{
+    work w = {.photo = *photo, .params = params, .further = *further};
+    return estimate_photo(model, &w, object, maps);
 }
 
 merlin_status merlin_estimate_object(merlin_model *model, merlin_image *photo, merlin_object *object,
@@ -379,7 +440,10 @@ merlin_status merlin_estimate_object(merlin_model *model, merlin_image *photo, m
 {
     if (maps) *maps = (merlin_maps){0};
     status s = api_needs(__func__, model && photo && object && maps);
-    if (s == OK) return estimate_photo(model, photo, photo, object, params, NULL, NULL, maps);
+    if (s == OK) {
+        work w = {.photo = *photo, .owned = photo, .params = params};
+        return estimate_photo(model, &w, object, maps);
+    }
     merlin_image_free(photo);
     merlin_object_free(object);
     return s;
@@ -393,7 +457,10 @@ merlin_status merlin_estimate(merlin_model *model, const merlin_image *photo, co
     status s = api_needs(__func__, model && photo && maps);
     if (s == OK) s = merlin_object_find(photo, mask, params ? &params->hint : NULL, &object);
     if (s == OK && params && params->stop && params->stop()) s = fail(MERLIN_STOPPED, "stopped");
-    if (s == OK) s = estimate_photo(model, photo, NULL, &object, params, NULL, NULL, maps);
+    if (s == OK) {
+        work w = {.photo = *photo, .params = params};
+        s = estimate_photo(model, &w, &object, maps);
+    }
     merlin_object_free(&object);
     return s;
 }

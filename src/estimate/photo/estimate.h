@@ -6,6 +6,7 @@
 #include "estimate/photo/light_cues.h"
 #include "estimate/surface/crop.h"
 #include "merlin/estimate.h"
+#include "model/model.h"
 
 /* Estimates as merlin_estimate_object does, and returns the cues from which the warning about the light is derived. */
 status estimate_with_cues(merlin_model *model, merlin_image *photo, merlin_object *object, const merlin_params *params,
@@ -22,5 +23,18 @@ typedef struct estimate_held {
 /* Estimates as merlin_estimate_object does, with what is held. */
 status estimate_with_held(merlin_model *model, merlin_image *photo, merlin_object *object, const merlin_params *params,
                           const estimate_held *held, merlin_maps *maps);
+
+/* Further photographs of an object, each under another light, from the place of the first one. */
+typedef struct estimate_further {
+    int count;
+    status (*take)(void *context, int number, img *out); /* makes one of them, 3 channels of the first one's size */
+    void *context;
+    float (*lights)[MODEL_LIGHTS]; /* receives the lights of the first one and of these (model.h); may be NULL */
+} estimate_further;
+
+/* Estimates as merlin_estimate does, from several photographs, of which all but the first are in memory one at a time.
+ * object is empty afterwards. MERLIN_WRONG_USE unless the model takes several. */
+status estimate_several(merlin_model *model, const merlin_image *photo, merlin_object *object,
+                        const merlin_params *params, const estimate_further *further, merlin_maps *maps);
 
 #endif

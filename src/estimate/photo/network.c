@@ -252,6 +252,7 @@ status network_run_view(network *n, const network_subject *at, int view, const c
     status s = network_compile(n, MODEL_MAPS, outputs, photo->width, c);
     if (s != OK) return s;
     view_put(c->program, 0, view, photo, mask);
+    view_put_shares(c->program, 1, photo->width);
     view_put_light(c->program, &n->config, 0, view, &(illumination){{0, 0, 0}, NULL});
     if (n->config.lighting == MODEL_LIGHT_ANY) view_put_sight(c->program, 0, view, at->how, photo->width);
     return nn_forward(c->program);

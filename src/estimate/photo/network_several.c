@@ -25,7 +25,7 @@ static status run_view(network *n, const pictures *of, int view)
         view_put_photo(p, (size_t)i, view, &of->photos[i]);
         view_put_known(p, (size_t)i, view, of->how, size);
     }
-    model_encode_shares(nn_input_data(p, "image"), of->count, (size_t)size * (size_t)size, nn_input_data(p, "share"));
+    view_put_shares(p, of->count, size);
     view_put_mask(p, 0, view, of->mask);
     view_put_lens(p, 0, view, of->how);
     view_put_light(p, &n->config, 0, view, &(illumination){{0, 0, 0}, NULL});

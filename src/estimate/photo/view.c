@@ -97,6 +97,12 @@ void view_put_sight(nn_program *p, size_t slot, int view, const sight *how, int 
     view_put_lens(p, slot, view, how);
 }
 
+void view_put_shares(nn_program *p, int pictures, int size)
+{
+    float *shares = nn_input_data(p, "share");
+    if (shares) model_encode_shares(nn_input_data(p, "image"), pictures, (size_t)size * (size_t)size, shares);
+}
+
 status view_features_take(nn_program *maps, const model_config *config, int size, view_features *out)
 {
     size_t total = 0;

@@ -30,6 +30,10 @@ void view_put_sight(nn_program *p, size_t slot, int view, const sight *how, int 
 void view_put_known(nn_program *p, size_t slot, int view, const sight *how, int size);
 void view_put_lens(nn_program *p, size_t slot, int view, const sight *how);
 
+/* Writes each pixel's share of the pictures' light (model_encode_shares) for a model of several photographs, after all
+ * pictures of an object; does nothing for other models. */
+void view_put_shares(nn_program *p, int pictures, int size);
+
 /* Features of a view for the relighting decoder (model_features), which do not depend on the light: read from picture 0
  * of a program of MODEL_MAPS that has run, and written into picture `slot` of one of MODEL_RELIGHT before every run.
  * The previous content of out is freed. MERLIN_NO_MEMORY. */
