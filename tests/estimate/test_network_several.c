@@ -100,6 +100,26 @@ static void the_order_of_photographs_changes_only_the_lights(void **state)
     network_estimation_free(&found[1]);
 }
 
+/* And each photograph's light. */
+static void a_network_of_one_photograph_gives_the_mean(void **state)
+{
+    const fixture *f = *state;
+    network_estimation each[2], mean;
+    float lights[2][MODEL_LIGHTS];
+    for (int k = 0; k < 2; k++)
+        assert_int_equal(network_estimate(f->single, &f->photo[k], &f->mask, &how, 1, NULL, &each[k]), OK);
+    assert_int_equal(network_estimate_several(f->single, f->photo, 2, &f->mask, &how, 1, NULL, lights, &mean), OK);
+    for (int i = 0; i < 3 * PIXELS; i++)
+        assert_float_equal(mean.maps.albedo.data[i],
+                           0.5f * (each[0].maps.albedo.data[i] + each[1].maps.albedo.data[i]), 1e-3);
+    for (int k = 0; k < 2; k++) {
+        assert_memory_equal(lights[k], each[k].lights, sizeof lights[k]);
+        network_estimation_free(&each[k]);
+    }
+    assert_memory_equal(mean.lights, lights[0], sizeof lights[0]);
+    network_estimation_free(&mean);
+}
+
 static int always(void)
 {
     return 1;
@@ -109,9 +129,13 @@ static void what_it_cannot_take_is_refused(void **state)
 {
     const fixture *f = *state;
     network_estimation e;
-    assert_int_equal(network_estimate_several(f->single, f->photo, 2, &f->mask, &how, 1, NULL, NULL, &e),
-                     MERLIN_WRONG_USE);
-    assert_non_null(strstr(status_message(), "one photograph at a time"));
+    network *flash;
+    const char *weights = scratch_path("point.safetensors");
+    assert_int_equal(write_random_weights_of("merlin-point", weights), OK);
+    assert_int_equal(network_open(weights, &flash), OK);
+    assert_int_equal(network_estimate_several(flash, f->photo, 2, &f->mask, &how, 1, NULL, NULL, &e), MERLIN_WRONG_USE);
+    assert_non_null(strstr(status_message(), "is for flashes"));
+    network_close(flash);
     assert_int_equal(network_estimate_several(f->network, f->photo, 0, &f->mask, &how, 1, NULL, NULL, &e),
                      MERLIN_WRONG_USE);
     assert_int_equal(network_estimate_several(f->network, f->photo, 2, &f->mask, &how, 1, always, NULL, &e),
@@ -124,6 +148,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_photograph_is_estimated_as_alone),
         cmocka_unit_test(the_order_of_photographs_changes_only_the_lights),
+        cmocka_unit_test(a_network_of_one_photograph_gives_the_mean),
         cmocka_unit_test(what_it_cannot_take_is_refused),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

@@ -144,20 +144,6 @@ static void find_lens(work *w, merlin_maps *maps)
     maps->slant[1] = w->how.lens.slant.up;
 }
 
-/* Makes the picture and mask that the network sees. */
-static status make_input(work *w, merlin_maps *maps)
-{
-    status s = take_crop(w, &maps->photo);
-    if (s == OK) s = input_make(&w->crop_photo, &w->crop_mask, maps->size, &w->low_photo, &w->low_mask);
-    if (s == OK) s = check_seen(&w->low_photo, &w->low_mask);
-    if (s != OK) return s;
-    maps->gain =
-        w->params->auto_exposure ? exposure_gain(&w->low_photo, &w->low_mask) : exposure_from_ev(w->params->exposure);
-    if (w->held.gain > 0) maps->gain = w->held.gain * powf(maps->gain / w->held.gain, w->held.new_share);
-    input_expose(&w->low_photo, maps->gain);
-    return make_all_further(w);
-}
-
 /* Makes what the network sees of a further photograph. */
 static status make_further(work *w, int number)
 {
@@ -189,11 +175,24 @@ static status make_all_further(work *w)
     return s;
 }
 
+/* Makes the picture and mask that the network sees. */
+static status make_input(work *w, merlin_maps *maps)
+{
+    status s = take_crop(w, &maps->photo);
+    if (s == OK) s = input_make(&w->crop_photo, &w->crop_mask, maps->size, &w->low_photo, &w->low_mask);
+    if (s == OK) s = check_seen(&w->low_photo, &w->low_mask);
+    if (s != OK) return s;
+    maps->gain =
+        w->params->auto_exposure ? exposure_gain(&w->low_photo, &w->low_mask) : exposure_from_ev(w->params->exposure);
+    if (w->held.gain > 0) maps->gain = w->held.gain * powf(maps->gain / w->held.gain, w->held.new_share);
+    input_expose(&w->low_photo, maps->gain);
+    return make_all_further(w);
+}
+
 static status run_network(network *n, work *w)
 {
     const merlin_params *p = w->params;
-    if (!w->low_photos)
-        return network_estimate(n, &w->low_photo, &w->low_mask, &w->how, p->views, p->stop, &w->low);
+    if (!w->low_photos) return network_estimate(n, &w->low_photo, &w->low_mask, &w->how, p->views, p->stop, &w->low);
     return network_estimate_several(n, w->low_photos, 1 + w->further.count, &w->low_mask, &w->how, p->views, p->stop,
                                     w->further.lights, &w->low);
 }

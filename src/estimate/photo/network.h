@@ -69,7 +69,8 @@ status network_see(network *n, const img *photo, const img *mask, const sight *h
 status network_lights(network *n, const img *photo, const img *mask, const sight *how, float lights[MODEL_LIGHTS]);
 /* Estimates the maps of an object from several photographs that one camera made of it from one place, each under
  * another light: photos, `count` of them, up to NN_LARGEST_GROUP, one exposure for each. lights (may be NULL) receives
- * each photograph's; out has those of the first. MERLIN_WRONG_USE unless the model takes several. */
+ * each photograph's; out has those of the first. A model of one photograph gives the mean of the maps that it makes of
+ * each. MERLIN_WRONG_USE for a model of flashes. */
 status network_estimate_several(network *n, const img *photos, int count, const img *mask, const sight *how, int views,
                                 int (*stop)(void), float (*lights)[MODEL_LIGHTS], network_estimation *out);
 void network_estimation_free(network_estimation *e);

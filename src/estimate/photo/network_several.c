@@ -56,19 +56,45 @@ static status see_all(network *n, const pictures *of, int views, int (*stop)(voi
     return s;
 }
 
+/* Estimates each photograph alone, by a network of one, and averages the maps. */
+static status see_each(network *n, const pictures *of, int views, int (*stop)(void), float (*lights)[MODEL_LIGHTS],
+                       network_estimation *out)
+{
+    float first[MODEL_LIGHTS] = {0};
+    status s = view_mean_new(&n->config, of->mask->width, out);
+    for (int i = 0; i < of->count && s == OK; i++) {
+        network_estimation one = {0};
+        s = network_see(n, &of->photos[i], of->mask, of->how, views, stop, &one);
+        if (s == OK && lights) memcpy(lights[i], one.lights, sizeof lights[i]);
+        if (s == OK) view_mean_add(out, &one, 0, 1.0f / (float)of->count);
+        if (i == 0) memcpy(first, one.lights, sizeof first);
+        network_estimation_free(&one);
+    }
+    memcpy(out->lights, first, sizeof out->lights);
+    return s;
+}
+
+static status see_together(network *n, const pictures *of, int views, int (*stop)(void), float (*lights)[MODEL_LIGHTS],
+                           network_estimation *out)
+{
+    pthread_mutex_lock(&n->lock);
+    status s = see_all(n, of, views, stop, lights, out);
+    pthread_mutex_unlock(&n->lock);
+    return s;
+}
+
 status network_estimate_several(network *n, const img *photos, int count, const img *mask, const sight *how, int views,
                                 int (*stop)(void), float (*lights)[MODEL_LIGHTS], network_estimation *out)
 {
     const pictures of = {photos, mask, count, how};
     *out = (network_estimation){0};
     status s = network_check_views(views);
-    if (s == OK && !n->config.several)
-        s = fail(MERLIN_WRONG_USE, "model \"%s\" takes one photograph at a time", n->config.name);
+    if (s == OK && n->config.lighting != MODEL_LIGHT_ANY)
+        s = fail(MERLIN_WRONG_USE, "model \"%s\" is for flashes: several photographs have other lights",
+                 n->config.name);
     if (s == OK && (count < 1 || count > NN_LARGEST_GROUP))
         s = fail(MERLIN_WRONG_USE, "%d photographs of an object: 1 to %d", count, NN_LARGEST_GROUP);
-    pthread_mutex_lock(&n->lock);
-    if (s == OK) s = see_all(n, &of, views, stop, lights, out);
-    pthread_mutex_unlock(&n->lock);
+    if (s == OK) s = (n->config.several ? see_together : see_each)(n, &of, views, stop, lights, out);
     out->maps.lens = how ? how->lens : (camera_lens){.fov = 0};
     img_free(&out->maps.mask);
     if (s == OK) s = img_copy(&out->maps.mask, mask);

@@ -11,7 +11,6 @@
 #include "base/text/report.h"
 #include "estimate/photo/input.h"
 #include "estimate/photo/network.h"
-#include "estimate/photo/view.h"
 #include "estimate/surface/exposure.h"
 #include "lab/eval/samples/each_sample.h"
 
@@ -54,27 +53,12 @@ static status photograph(const lit_subject *on, int number, photographs *out)
     return OK;
 }
 
-/* Computes the mean of the maps that a network of one photograph makes of each. */
-static status mean_of_each(const run *r, const photographs *p, int count, network_estimation *out)
-{
-    status s = view_mean_new(network_config(r->network), p->mask.width, out);
-    for (int i = 0; i < count && s == OK; i++) {
-        network_estimation one = {0};
-        s = network_estimate(r->network, &p->photo[i], &p->mask, &p->how, r->options->views, NULL, &one);
-        if (s == OK) view_mean_add(out, &one, 0, 1.0f / (float)count);
-        network_estimation_free(&one);
-    }
-    if (s == OK) surface_tidy_normals(&p->mask, &out->maps.normal);
-    return s;
-}
-
 static status measure(const run *r, const lit_subject *on, const photographs *p, int row)
 {
     const int count = 1 << row;
     network_estimation found = {0};
-    status s = r->table->together ? network_estimate_several(r->network, p->photo, count, &p->mask, &p->how,
-                                                             r->options->views, r->options->stopped, NULL, &found)
-                                  : mean_of_each(r, p, count, &found);
+    status s = network_estimate_several(r->network, p->photo, count, &p->mask, &p->how, r->options->views,
+                                        r->options->stopped, NULL, &found);
     if (s == OK) {
         lit_figures_add(&found.maps, on, r->table->mean[row]);
         r->table->count[row]++;
