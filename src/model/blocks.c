@@ -4,8 +4,10 @@
 #include <stdio.h>
 
 enum { NAME = 96 };
-/* Numbers of heads and of channels a head of attention among pictures. */
+/* Number of heads of attention among pictures, and of channels a head in the encoder. */
 enum { HEADS = 4, HEAD_WIDTH = 32 };
+/* Numbers of channels, blocks and channels of the light in the decoder by pixel. */
+enum { PIXEL_WIDTH = 64, PIXEL_BLOCKS = 2, PIXEL_LIGHT = 32 };
 
 /* Writes "a.b" to the caller's buffer; the graph copies names. */
 static const char *join(char *buffer, const char *a, const char *b)
@@ -80,12 +82,12 @@ void block_encoder(nn_graph *g, nn_node *x, const char *name, const block_encode
 
 /* Adds multi-head attention among the pictures of normalized features (Vaswani et al. 2017, with the norm before it).
  */
-static nn_node *attend(nn_graph *g, nn_node *x, const char *name, int width)
+static nn_node *attend(nn_graph *g, nn_node *x, const char *name, int width, int head_width)
 {
     char buffer[NAME], own[NAME];
     join(own, name, "attention");
     nn_node *y = nn_layer_norm(g, x, join(buffer, own, "norm"));
-    y = nn_conv2d(g, y, join(buffer, own, "in"), 3 * HEADS * HEAD_WIDTH, 1, 1, NN_BIAS);
+    y = nn_conv2d(g, y, join(buffer, own, "in"), 3 * HEADS * head_width, 1, 1, NN_BIAS);
     y = nn_group_attention(g, y, NULL, HEADS);
     return nn_add(g, x, nn_conv2d_zero(g, y, join(buffer, own, "out"), width, 1, 1, NN_BIAS));
 }
@@ -97,7 +99,7 @@ nn_node *block_exchange(nn_graph *g, nn_node *x, const char *name, int width, bo
                          nn_group_repeat(g, nn_group_mean(g, x, NULL))};
     nn_node *y = nn_conv2d_zero(g, nn_concat(g, parts, 3), join(buffer, name, "exchange"), width, 1, 1, NN_BIAS);
     y = nn_add(g, x, y);
-    return attention ? attend(g, y, name, width) : y;
+    return attention ? attend(g, y, name, width, HEAD_WIDTH) : y;
 }
 
 nn_node *block_fuse(nn_graph *g, nn_node *x, const char *name, int width)
@@ -105,6 +107,36 @@ nn_node *block_fuse(nn_graph *g, nn_node *x, const char *name, int width)
     nn_node *mean = nn_group_mean(g, x, NULL);
     nn_node *parts[3] = {nn_group_max(g, x, NULL), mean, nn_group_spread(g, x, NULL)};
     return nn_add(g, mean, nn_conv2d_zero(g, nn_concat(g, parts, 3), name, width, 1, 1, NN_BIAS));
+}
+
+/* Adds two fully connected layers at each pixel, in parallel to x. */
+static nn_node *think(nn_graph *g, nn_node *x, const char *name, int width)
+{
+    char buffer[NAME];
+    nn_node *y = nn_layer_norm(g, x, join(buffer, name, "norm"));
+    y = nn_relu(g, nn_conv2d(g, y, join(buffer, name, "a"), 2 * width, 1, 1, NN_BIAS));
+    return nn_add(g, x, nn_conv2d_zero(g, y, join(buffer, name, "b"), width, 1, 1, NN_BIAS));
+}
+
+nn_node *block_pixels(nn_graph *g, const block_pixel_inputs *in, const char *name, int channels)
+{
+    char buffer[NAME];
+    nn_node *light = nn_linear(g, nn_compute(g, in->light), join(buffer, name, "light"), PIXEL_LIGHT);
+    nn_node *parts[4] = {in->pixels, in->own, nn_group_repeat(g, in->object), nn_tile(g, nn_tanh(g, light), in->own)};
+    nn_node *x = nn_conv2d(g, nn_concat(g, parts, 4), join(buffer, name, "in"), PIXEL_WIDTH, 1, 1, NN_BIAS);
+    x = nn_relu(g, x);
+    for (int i = 0; i < PIXEL_BLOCKS; i++) {
+        char block[NAME];
+        snprintf(block, sizeof block, "%.63s.block%d", name, i);
+        x = attend(g, x, block, PIXEL_WIDTH, PIXEL_WIDTH / HEADS);
+        x = think(g, x, block, PIXEL_WIDTH);
+    }
+    x = nn_layer_norm(g, x, join(buffer, name, "norm"));
+    x = nn_conv2d(g, x, join(buffer, name, "values"), 2 * PIXEL_WIDTH, 1, 1, NN_BIAS);
+    nn_node *both[2] = {nn_group_pool(g, x, NULL, join(buffer, name, "pool"), HEADS), in->object};
+    nn_node *y = nn_conv2d(g, nn_concat(g, both, 2), join(buffer, name, "fuse"), PIXEL_WIDTH, 1, 1, NN_BIAS);
+    y = nn_conv2d_zero(g, nn_relu(g, y), join(buffer, name, "head"), 4 * channels, 1, 1, NN_BIAS);
+    return nn_depth_to_space(g, nn_float(g, y), 2);
 }
 
 /* Adds an attention gate (Oktay et al. 2018): sigma(psi(ReLU(W_x skip + W_g signal + b)) + b_psi), computed at the

@@ -33,6 +33,18 @@ nn_node *block_exchange(nn_graph *g, nn_node *x, const char *name, int width, bo
  * (`name.*`). For one picture it is that picture's. */
 nn_node *block_fuse(nn_graph *g, nn_node *x, const char *name, int width);
 
+/* Inputs of a decoder that compares an object's pictures at each pixel. */
+typedef struct block_pixel_inputs {
+    nn_node *pixels; /* the pictures' own values, 2×2 pixels packed into channels */
+    nn_node *own;    /* each picture's features, at half size */
+    nn_node *object; /* the object's, likewise */
+    nn_node *light;  /* each picture's light: vectors */
+} block_pixel_inputs;
+
+/* Adds a decoder for 2×2 pixels at a time: attention among the pictures, pooled by a learned query (Ikehata, SDM-UniPS,
+ * CVPR 2023, and its kind). Full size, `channels` of the object, float; zero until it is trained. */
+nn_node *block_pixels(nn_graph *g, const block_pixel_inputs *in, const char *name, int channels);
+
 typedef struct block_decoder_inputs {
     const char *name;
     const int *widths;

@@ -41,6 +41,7 @@ typedef struct network {
     const model_config *config;
     nn_node *mask, *light_position;
     nn_node *sight, *lens;               /* NULL unless "lighting" is "any" */
+    nn_node *pixels;                     /* what the decoder by pixel sees of each picture; NULL unless "several" */
     nn_node *seen[MODEL_LEVELS];         /* encoder's features of each picture */
     nn_node *encoder[MODEL_LEVELS];      /* those of the object: of several pictures together, else the same */
     nn_node *material[MODEL_LEVELS - 1]; /* features of the material decoder, or the sum of those of four decoders */
@@ -83,6 +84,10 @@ static void material_by_one_decoder(network *n)
     nn_graph *g = n->g;
     decode_material(n, "material", n->material);
     nn_node *y = block_head(g, n->material[0], "material.head", 8);
+    if (n->config->several) {
+        const block_pixel_inputs in = {n->pixels, n->seen[0], n->material[0], n->lights};
+        y = nn_add(g, y, block_pixels(g, &in, "pixels", 8));
+    }
     n->maps.albedo = nn_tanh(g, nn_slice(g, y, 0, 3));
     n->maps.normal = nn_normalize(g, nn_slice(g, y, 3, 3));
     n->maps.roughness = nn_tanh(g, nn_slice(g, y, 6, 1));
@@ -211,10 +216,7 @@ static void build_lights(network *n, model_part part)
         n->environment = render_environment(n, n->environment_code);
         n->direct = nn_add(g, n->direct, n->environment);
     }
-    if (any) {
-        n->lights = estimate_light(n, "lights.fc1", "lights.fc2", MODEL_LIGHTS);
-        n->visibility = estimate_visibility(n);
-    }
+    if (any) n->visibility = estimate_visibility(n);
     first_bounce first = {n->direct, n->environment};
     if (n->config->global_illumination) n->indirect = global_illumination(g, n->config, &first, &n->maps, n->mask);
     if (part == MODEL_MAPS) return;
@@ -237,8 +239,10 @@ static void encode(network *n)
 {
     nn_graph *g = n->g;
     const model_config *c = n->config;
-    nn_node *parts[2] = {nn_input(g, "image", 3, 1), c->several ? nn_group_repeat(g, n->mask) : n->mask};
-    nn_node *share = c->several ? nn_input(g, "share", 1, 1) : NULL;
+    nn_node *image = nn_input(g, "image", 3, 1);
+    nn_node *parts[2] = {image, c->several ? nn_group_repeat(g, n->mask) : n->mask};
+    nn_node *share = c->several ? nn_input(g, "share", 1, 1) : NULL, *pixel[2] = {image, share};
+    if (c->several) n->pixels = nn_space_to_depth(g, nn_compute(g, nn_concat(g, pixel, 2)), 2);
     const block_encoder_shape shape = {c->widths, c->encoder_blocks, n->sight, share, c->several};
     block_encoder(g, nn_concat(g, parts, 2), "encoder", &shape, n->seen);
     for (int i = 0; i < MODEL_LEVELS; i++) {
@@ -257,6 +261,7 @@ static void build_network(network *n, model_part part)
         n->lens = object_input(n, "lens", 3, NN_VECTOR);
     }
     encode(n);
+    if (n->config->lighting == MODEL_LIGHT_ANY) n->lights = estimate_light(n, "lights.fc1", "lights.fc2", MODEL_LIGHTS);
     if (n->config->material_decoders == 1)
         material_by_one_decoder(n);
     else

@@ -44,6 +44,7 @@ static const optional optionals[] = {
     {"ssim_weight", 1e4, offsetof(train_config, ssim_weight), 0},
     {"dark_target", 1, offsetof(train_config, dark_target), 0},
     {"most_pictures", 64, offsetof(train_config, most_pictures), 1},
+    {"single_rate_scale", 10, offsetof(train_config, single_rate_scale), 1},
     {"weight_decay", 1, offsetof(train_config, weight_decay), 0},
     {"average_decay", 0.999999, offsetof(train_config, average_decay), 0},
 };

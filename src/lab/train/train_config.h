@@ -36,6 +36,8 @@ typedef struct train_config {
     double dark_target;   /* setting B: share of targets without an environment */
     double most_pictures; /* of an object at once; each step has a number of them that divides a rank's batch. 1 unless
                            * the model takes several */
+    double single_rate_scale; /* ratio of the rate of parameters that the model of one photograph has, too, to that of
+                               * those which only a model of several has; 1 by default */
     double weight_decay;  /* of convolutions and fully connected layers, decoupled (nn_adam_options) */
     double average_decay; /* of the weights' mean (train/average.h), which is validated and exported; 0: the last
                            * weights are */

@@ -202,7 +202,7 @@ static void kinds_come_as_often_as_they_should(void **state)
         train_camera lens = train_camera_perfect();
         train_mixture m;
         if (i % 300 == 0) assert_int_equal(train_dataset_get(f->data, (size_t)i / 300, 0, &f->view), OK);
-        train_mixture_draw(&f->view, &r, &lens, &m);
+        train_mixture_draw(&f->view, &r, false, &lens, &m);
         kinds[m.kind]++;
         lamps += m.strongest >= 0;
         told += m.told_flash;
@@ -216,6 +216,21 @@ static void kinds_come_as_often_as_they_should(void **state)
     assert_true(abs(known - DRAWS * 3 / 4) < 60);
 }
 
+/* The flash or the room alone would repeat what a first picture shows. */
+static void further_pictures_are_mixed(void **state)
+{
+    fixture *f = *state;
+    assert_int_equal(train_dataset_get(f->data, 0, 0, &f->view), OK);
+    for (int i = 0; i < 100; i++) {
+        rng r = rng_at(4, (uint64_t)i, 0);
+        train_camera lens = train_camera_perfect();
+        train_mixture m;
+        train_mixture_draw(&f->view, &r, true, &lens, &m);
+        assert_int_equal(m.kind, TRAIN_MIXED);
+        assert_false(m.told_flash);
+    }
+}
+
 static void exposure_leaves_neither_darkness_nor_white_alone(void **state)
 {
     fixture *f = *state;
@@ -225,7 +240,7 @@ static void exposure_leaves_neither_darkness_nor_white_alone(void **state)
         train_camera lens = train_camera_perfect();
         train_mixture m;
         assert_int_equal(train_dataset_get(f->data, (size_t)i % SAMPLES, 0, v), OK);
-        train_mixture_draw(v, &r, &lens, &m);
+        train_mixture_draw(v, &r, false, &lens, &m);
         if (m.kind == TRAIN_FLASH) continue;
         prepare(f, &m, &lens);
         float brightest = 0;
@@ -247,7 +262,7 @@ static void nobody_photographs_darkness(void **state)
         rng r = rng_at(10, (uint64_t)i, 0);
         train_camera lens = train_camera_perfect();
         train_mixture m;
-        train_mixture_draw(v, &r, &lens, &m);
+        train_mixture_draw(v, &r, false, &lens, &m);
         assert_true(isfinite(lens.gain[0]) && lens.gain[0] > 0 && m.flash.x > 0);
         assert_int_equal(m.strongest, -1);
     }
@@ -274,7 +289,7 @@ static void a_camera_exposes_for_what_is_lit(void **state)
         rng r = rng_at(12, (uint64_t)i, 0);
         train_camera lens = train_camera_perfect();
         train_mixture m;
-        train_mixture_draw(v, &r, &lens, &m);
+        train_mixture_draw(v, &r, false, &lens, &m);
         lamps += m.strongest >= 0;
         for (int c = 0; c < 3; c++)
             assert_true(lens.gain[c] < 2000);
@@ -348,6 +363,7 @@ int main(void)
         cmocka_unit_test(a_photograph_is_the_sum_of_its_lights),
         cmocka_unit_test(the_truth_about_a_lamp_makes_the_photograph),
         cmocka_unit_test(kinds_come_as_often_as_they_should),
+        cmocka_unit_test(further_pictures_are_mixed),
         cmocka_unit_test(exposure_leaves_neither_darkness_nor_white_alone),
         cmocka_unit_test(nobody_photographs_darkness),
         cmocka_unit_test(a_camera_exposes_for_what_is_lit),
