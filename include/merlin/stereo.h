@@ -50,6 +50,7 @@ typedef struct merlin_capture_files {
     int near_lights; /* 1: the list contains positions in the camera's space; those of an .lp file are relative to the
                       * object, and merlin_stereo estimates its distance if it is unknown, unless all have z below 0 */
     int unknown_lights;  /* 1: ignore where lights are listed to be */
+    int lights_optional; /* 1: a folder without a list of lights is read, too: its lights are unknown */
     int linear;          /* 1: 8-bit pictures are linear, not sRGB, whatever their profiles state */
     float field_of_view; /* horizontal, degrees; 0: unknown */
     float distance;    /* of the object from the camera, in the unit of the lights' positions; 0: unknown. Only for near
@@ -78,6 +79,8 @@ merlin_status merlin_capture_new(const merlin_capture_params *params, const merl
 /* Adds a picture: 1 or 3 channels of linear light in [0, 1], the same for all pictures, of the mask's size; values from
  * 0.98 on count as saturated. light NULL: it is unknown. */
 merlin_status merlin_capture_add(merlin_capture *capture, const merlin_image *picture, const merlin_light *light);
+/* Returns what is known of the lights. */
+merlin_lighting merlin_capture_lighting(const merlin_capture *capture);
 void merlin_capture_free(merlin_capture *capture);
 
 /* ---- the surface ---- */

@@ -145,6 +145,11 @@ merlin_status merlin_capture_add(merlin_capture *capture, const merlin_image *pi
     return pst_capture_add(capture, picture, &taken);
 }
 
+merlin_lighting merlin_capture_lighting(const merlin_capture *capture)
+{
+    return capture ? capture->lighting : MERLIN_UNKNOWN_LIGHTS;
+}
+
 void merlin_capture_free(merlin_capture *capture)
 {
     if (!capture) return;

@@ -30,7 +30,7 @@ absent new
 
 mkdir taken
 printf "" >taken/000000.exr
-refuses 1 "or give --method uncalibrated" "$MERLIN" stereo taken
+refuses 1 "or give --method universal or uncalibrated" "$MERLIN" stereo taken --method robust
 
 echo "a batch goes on after a photograph that is missing, the first one included"
 "$MERLIN" estimate missing.png disc.hdr missing2.png -q -o batch --model weights.safetensors >out 2>errors

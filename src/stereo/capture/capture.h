@@ -47,6 +47,7 @@ struct merlin_capture {
     int frames;            /* number of frames in the first picture's file, the first of which is read: 1 for most */
     skipped_files skipped; /* files of the folder that were not read */
     img mask;              /* 1 channel; 1 on the object */
+    bool mask_found;       /* whether the reader found it by brightness */
     img normal_true;       /* 3 channels, or empty: ground truth if the layout has one */
     img depth_true;        /* 1 channel, or empty */
     float field_of_view;   /* field of view for pictures to come, as in merlin_capture_params */

@@ -148,19 +148,28 @@ status pst_read_light_list(const char *folder, const char *lights, const merlin_
     return s;
 }
 
+/* Reads pictures of which no list of lights is used. */
+static status read_unlit(const char *folder, merlin_capture *c)
+{
+    status s = pst_take_pictures(folder, false, NULL, 0, c);
+    return s == OK ? pst_read_intensities(folder, NULL, c) : s;
+}
+
 status pst_read_plain(const char *folder, const merlin_capture_files *options, merlin_capture *c)
 {
     char *lights = NULL;
-    if (options->unknown_lights) {
-        status s = pst_take_pictures(folder, false, NULL, 0, c);
-        return s == OK ? pst_read_intensities(folder, NULL, c) : s;
-    }
+    if (options->unknown_lights) return read_unlit(folder, c);
     status s = find_lights(folder, options->lights, &lights);
+    if (s == OK && !lights && options->lights_optional && !options->near_lights) {
+        s = read_unlit(folder, c);
+        c->lighting = MERLIN_UNKNOWN_LIGHTS;
+        return s;
+    }
     if (s == OK && !lights) s = pst_check_pictures(folder);
     if (s == OK && !lights)
         return fail(MERLIN_BAD_INPUT,
                     "%s says nothing of its lights (no lights.txt, .lp, LUCES or DiLiGenT files); name the file that "
-                    "holds them, or give --method uncalibrated, which finds them",
+                    "holds them, or give --method universal or uncalibrated, which find them",
                     folder);
     if (s == OK) s = pst_read_light_list(folder, lights, options, c);
     free(lights);

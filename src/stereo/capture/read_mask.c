@@ -91,6 +91,7 @@ status pst_read_mask(const char *folder, const merlin_capture_files *options, me
         if (s == OK) s = check_mask(path, c);
     } else {
         s = find_mask(folder, c);
+        c->mask_found = true;
     }
     if (s == OK) s = pst_list_skipped(folder, path, options->ambient, c);
     free(path);

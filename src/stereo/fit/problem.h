@@ -19,6 +19,12 @@ typedef struct pst_effort {
 /* Adds fits, from any thread; only the owner reports progress. */
 void pst_effort_add(pst_effort *e, size_t fits);
 
+/* What is known from elsewhere, such as a network's estimates. */
+typedef struct pst_expected {
+    const img *normal; /* 3 channels, unit, or zero where there is none, of the pictures' size */
+    const vec3 *light; /* one per picture: the direction to its light times the probability that there is one */
+} pst_expected;
+
 typedef struct pst_problem {
     const merlin_capture *capture; /* capture with at most PST_MAX_LIGHTS pictures, except for ls */
     const merlin_light *light; /* count; intensities above 0. The capture's own unless a solver has found better ones */
@@ -26,7 +32,8 @@ typedef struct pst_problem {
     size_t pixel_count;
     float saturation;   /* share of full scale below which values are usable */
     int iterations;     /* 0: the solver's default */
-    pst_effort *effort; /* may be NULL */
+    const pst_expected *expected; /* for unknown lights; NULL: nothing */
+    pst_effort *effort;  /* may be NULL */
 } pst_problem;
 
 /* Checks directions, which must be unit: fewer than 3 lights, or all in a plane through the origin, are refused. */

@@ -186,7 +186,8 @@ static size_t expected_effort(const pst_problem *p, merlin_stereo_method method)
     return (known ? passes[method] : 1) * p->pixel_count + (method == MERLIN_STEREO_NEAR ? SMALL_ONES : 0) + 1;
 }
 
-status pst_solve(const merlin_capture *c, const merlin_stereo_params *params, merlin_surface *out)
+status pst_solve_expecting(const merlin_capture *c, const merlin_stereo_params *params, const pst_expected *expected,
+                           merlin_surface *out)
 {
     const watch shown = {params->progress, params->progress_context, params->stop};
     *out = (merlin_surface){.method = params->method == MERLIN_STEREO_AUTO ? choose(c) : params->method,
@@ -195,7 +196,11 @@ status pst_solve(const merlin_capture *c, const merlin_stereo_params *params, me
     if (s != OK) return s;
     merlin_light *light = calloc((size_t)c->count, sizeof *light);
     if (!light) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", c->count);
-    pst_problem p = {.capture = c, .light = light, .saturation = PST_SATURATED, .iterations = params->iterations};
+    pst_problem p = {.capture = c,
+                     .light = light,
+                     .saturation = PST_SATURATED,
+                     .iterations = params->iterations,
+                     .expected = expected};
     pst_effort effort = {.watch = &shown, .owner = pthread_self()};
     if (shown.tell || shown.stop) p.effort = &effort;
     watch_tell(&shown, "solving", 0);
@@ -214,4 +219,9 @@ status pst_solve(const merlin_capture *c, const merlin_stereo_params *params, me
     free(light);
     if (s != OK) merlin_surface_free(out);
     return s;
+}
+
+status pst_solve(const merlin_capture *c, const merlin_stereo_params *params, merlin_surface *out)
+{
+    return pst_solve_expecting(c, params, NULL, out);
 }

@@ -335,8 +335,7 @@ static float *place(const img *sums, const pst_bounds *r, const pst_problem *p, 
     return img_at(sums, (int)(p->pixel[i] % width) - r->left, (int)(p->pixel[i] / width) - r->top);
 }
 
-/* Averages over a neighbourhood, as between adjacent pixels the surface turns by less than the noise. */
-static status average(const pst_pseudo *f)
+status pst_average_surface(const pst_pseudo *f)
 {
     const pst_problem *p = f->problem;
     const pst_bounds r = pst_bounds_of(p);
@@ -362,6 +361,6 @@ static status average(const pst_pseudo *f)
 
 status pst_find_rotation(const pst_pseudo *f, vec3 mean_light, pst_rotation *out)
 {
-    status s = average(f);
+    status s = pst_average_surface(f);
     return s == OK ? rotate(f, mean_light, out) : s;
 }

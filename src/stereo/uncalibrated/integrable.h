@@ -38,6 +38,10 @@ static inline vec3 pst_transform(const double m[9], vec3 v)
                      (float)(m[6] * v.x + m[7] * v.y + m[8] * v.z));
 }
 
+/* Replaces f->b by its mean over a neighbourhood, as between adjacent pixels the surface turns by less than the noise.
+ */
+status pst_average_surface(const pst_pseudo *f);
+
 /* Finds the rotation; f->b, known up to a rotation or reflection, is replaced by its mean over a neighbourhood.
  * mean_light: of the lights in b's space. MERLIN_BAD_INPUT if the mask is too thin, or no rotation leaves the lights in
  * front of the object. */

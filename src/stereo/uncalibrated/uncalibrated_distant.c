@@ -7,7 +7,8 @@
  * 2. Prior: most lights have equal strength or, if that is impossible or the alternative is much more exact, most of
  * the
  *    surface has one albedo. A rotation or reflection remains (unit_quadric.h).
- * 3. It is found by integrability and by the outline (integrable.h).
+ * 3. It is found by integrability and by the outline (integrable.h). If the problem has an expected surface, it, the
+ *    lights' strengths and integrability determine all of the matrix instead (light_fit.h).
  * 4. With the lights and their strengths known, the robust solver does the rest. */
 #include <math.h>
 #include <stdlib.h>
@@ -18,6 +19,7 @@
 #include "stereo/fit/pixel_fit.h"
 #include "stereo/fit/samples.h"
 #include "stereo/uncalibrated/integrable.h"
+#include "stereo/uncalibrated/light_fit.h"
 #include "stereo/uncalibrated/uncalibrated_parts.h"
 
 enum { SAMPLE = 1500, REFITS = 30 };
@@ -122,9 +124,29 @@ static status straighten(pst_pseudo *f, lights3 *l)
     return OK;
 }
 
+/* Converts the pseudo lights to directions with a surface that is expected not by its outline alone, so that no prior
+ * needs to be exact. */
+static status resolve_as_expected(pst_pseudo *f, lights3 *l, pst_rotation *rotation)
+{
+    double dual[9];
+    vec3 *light = malloc((size_t)l->count * sizeof *light);
+    if (!light) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", l->count);
+    for (int k = 0; k < l->count; k++)
+        light[k] = vec3_make(l->x[k], l->y[k], l->z[k]);
+    status s = pst_average_surface(f);
+    if (s == OK) s = pst_fit_lights(f, light, l->count, rotation->at);
+    free(light);
+    if (s != OK) return s;
+    if (!pst_dual(rotation->at, dual)) return fail(MERLIN_BAD_INPUT, "the pictures do not tell where the lights are");
+    transform_lights(dual, l);
+    return OK;
+}
+
 /* Converts the pseudo lights to directions. */
 static status resolve(pst_pseudo *f, lights3 *l, pst_rotation *rotation)
 {
+    *rotation = (pst_rotation){.unsure = false};
+    if (f->problem->expected) return resolve_as_expected(f, l, rotation);
     status s = straighten(f, l);
     if (s == OK) s = pst_find_rotation(f, mean_light(l), rotation);
     if (s == OK) transform_lights(rotation->at, l);
