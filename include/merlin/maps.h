@@ -72,9 +72,11 @@ typedef struct merlin_maps {
     unsigned doubts;       /* bits of merlin_doubt; for maps that were read, only corrections to them */
     float light_elsewhere; /* probability that the photograph was not lit from the lens, in [0, 1] */
     int reduced, frames;   /* as in merlin_shot */
-    int captured;   /* 1: maps of a surface by photometric stereo, without gloss and photograph: `photo` is black. The
-                     * surface is near (0, 0, -1), with the square around it as a frame 60 degrees wide */
-    float fov;      /* horizontal field of view of the crop in degrees, by the lens; 0: unknown, taken to be 60 */
+    int captured;    /* 1: maps of a surface by photometric stereo, without gloss and photograph: `photo` is black. The
+                      * surface is near (0, 0, -1), with the square around it as a frame 60 degrees wide */
+    int photographs; /* number of photographs that they were made from together; 0 or 1: one */
+    int refined; /* 1: photometric stereo from several photographs made the normals, and the depth agrees with these */
+    float fov;   /* horizontal field of view of the crop in degrees, by the lens; 0: unknown, taken to be 60 */
     float slant[2]; /* direction from the lens to the crop's middle, as sines to the right and upwards; the maps' space
                      * is that of a camera that looks at it */
     struct {
@@ -111,6 +113,7 @@ typedef enum merlin_doubt {
     MERLIN_DOUBT_ALBEDO_CLAMPED = 1 << 17,
     MERLIN_DOUBT_ROUGHNESS_CLAMPED = 1 << 18,
     MERLIN_DOUBT_DEPTH_CLAMPED = 1 << 19,
+    MERLIN_DOUBT_NOT_REFINED = 1 << 20, /* photographs is above 1, and refined 0: shape is the network's alone */
 } merlin_doubt;
 
 /* Returns a doubt's name, "light_elsewhere", as in report.json; "" for another value. */

@@ -10,7 +10,7 @@
 #ifndef MERLIN_SURFACE_H
 #define MERLIN_SURFACE_H
 
-#include <merlin/maps.h>
+#include <merlin/estimate.h>
 #include <merlin/stereo.h>
 
 #ifdef __cplusplus
@@ -45,6 +45,16 @@ enum { MERLIN_SPREAD_LIMIT = 20 };
  * are ignored. */
 merlin_status merlin_stereo_from_maps(merlin_model *model, const merlin_maps *maps, const merlin_stereo_params *params,
                                       merlin_surface *out);
+
+/* ---- from several photographs ---- */
+
+/* Makes maps of the object of a capture from its pictures alone, of one or more of them: its lights may be unknown, and
+ * are ignored. The model is one of any light, and sees up to 32 of them; from 7 pictures on
+ * photometric stereo refines its normals where that explains the pictures by a similar surface (maps.refined). The
+ * capture's mask is the object; without one it is searched for in all pictures. photo and light are those of the first
+ * picture. params NULL: the defaults; flash is ignored. */
+merlin_status merlin_maps_from_capture(merlin_model *model, const merlin_capture *capture, const merlin_params *params,
+                                       merlin_maps *maps);
 
 #ifdef __cplusplus
 }

@@ -11,7 +11,7 @@ import numpy as np
 
 from . import _headers as h
 from . import mesh, pictures
-from ._call import Owner, ProgressCallback, StopCallback, Watch, by_channel, check, choice, floats, is_path
+from ._call import Owner, ProgressCallback, StopCallback, Watch, by_channel, call, check, choice, floats, is_path
 from ._call import optional_path, path_bytes, real, taken_text, vector3, view, whole
 from .errors import WrongUseError
 from .mesh import Mesh
@@ -77,7 +77,7 @@ class Capture:
         pictures are linear. Progress and stop: as of Model.estimate."""
         name = path_bytes(folder)
         files = h.CaptureFiles(optional_path(lights), optional_path(mask), optional_path(ambient), int(near),
-                               int(unknown), int(linear), real(field_of_view, "field_of_view"),
+                               int(unknown), 0, int(linear), real(field_of_view, "field_of_view"),
                                real(distance, "distance"))
         watch = Watch(progress, stop)
         watch.put(files)
@@ -115,6 +115,27 @@ class Capture:
         surface = Surface(owner)
         warn(surface.warnings)
         return surface
+
+    def maps(self, model: "Optional[Model]" = None, *, views: int = 4, fov: Optional[float] = None,
+             points: Any = None, box: Any = None, progress: Optional[ProgressCallback] = None,
+             stop: Optional[StopCallback] = None) -> "Maps":
+        """The maps of the object in these pictures, of one or more, whatever their lights are, which are ignored: a
+        network's and, from 7 pictures on, photometric stereo's where that finds the lights. model: one of any light;
+        None: the one that ships. The capture's mask is the object; without one it is searched for. views, fov, points,
+        box, progress and stop: as of Model.estimate."""
+        from .maps import Maps
+        from .model import Model, hint_of
+        model = Model() if model is None else model
+        params = call("params_default")
+        params.views, params.fov = whole(views, "views"), 0 if fov is None else real(fov, "fov")
+        params.hint = hint_of(points, box)
+        watch = Watch(progress, stop)
+        watch.put(params)
+        owner = Owner(h.Maps(), "maps_free")
+        watch.check("maps_from_capture", model._handle.struct, self._owner.struct, ctypes.byref(params), owner.at)
+        made = Maps(owner, model)
+        warn(made.doubts)
+        return made
 
 
 class Statistics(NamedTuple):

@@ -146,6 +146,16 @@ class Maps:
         return self._struct.model.decode("utf-8", "replace")
 
     @property
+    def photographs(self) -> int:
+        """So many were seen together (Capture.maps); 0 or 1 for most."""
+        return self._struct.photographs
+
+    @property
+    def refined(self) -> bool:
+        """Whether the normals are photometric stereo's from several photographs."""
+        return bool(self._struct.refined)
+
+    @property
     def reduced(self) -> int:
         """So many of the file's pixels a side became one: 0 or 1 for most."""
         return self._struct.reduced

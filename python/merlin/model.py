@@ -31,7 +31,8 @@ def _default_weights() -> Tuple[bytes, Optional[bytes]]:
     return weights_path("merlin-any"), None if flash is None else os.fsencode(flash)
 
 
-def _hint(points: Optional[Points], box: Optional[Box]) -> Any:
+def hint_of(points: Optional[Points], box: Optional[Box]) -> Any:
+    """Where the object is, as the library takes it."""
     hint = h.Hint()
     try:
         pairs = [(x, y) for x, y in points or ()]
@@ -97,7 +98,7 @@ def find_object(photo: Picture, mask: Optional[Picture] = None, *, points: Optio
 
     points: up to 16 (x, y), pixels of the object; box: (x, y, width, height), which holds all of it. Both help the
     search, and are refused where there is a mask."""
-    return FoundObject(_find(*_taken(photo, mask, linear), _hint(points, box)))
+    return FoundObject(_find(*_taken(photo, mask, linear), hint_of(points, box)))
 
 
 class _Ahead(threading.Thread):
@@ -197,7 +198,7 @@ class Model:
             params.auto_exposure, params.exposure = 0, real(exposure, "exposure")
         params.flash, params.last = int(flash), int(last)
         params.fov = 0 if fov is None else real(fov, "fov")
-        hint = _hint(points, box)
+        hint = hint_of(points, box)
         watch = Watch(progress, stop)
         watch.put(params)
         handle = self._handle

@@ -151,6 +151,23 @@ def test_wrong_words_are_refused(sphere):
         merlin.Capture("bright")
 
 
+def test_a_capture_makes_maps(sphere, model):
+    """Whose normals are photometric stereo's, though nothing is known of the lights."""
+    _lights, pictures, normal, inside = sphere
+    capture = merlin.Capture("unknown", mask=inside)
+    for picture in pictures:
+        capture.add(picture.astype(np.float32), linear=True)
+    stages = []
+    maps = capture.maps(model, views=1, progress=lambda stage, _share: stages.append(stage))
+    assert maps.photographs == len(pictures) and maps.refined and "estimating" in stages
+    assert (maps.normal * normal)[inside].sum(axis=1).mean() > np.cos(np.radians(11))
+    with pytest.warns(merlin.MerlinWarning, match="needs 7 pictures"):
+        few = merlin.Capture("unknown", mask=inside)
+        few.add(pictures[0].astype(np.float32), linear=True)
+        few.add(pictures[1].astype(np.float32), linear=True)
+        assert not few.maps(model, views=1).refined
+
+
 def chrome(light, size=128, radius=50):
     """A mirror ball with the light's highlight."""
     half = light / np.linalg.norm(light) + [0, 0, 1]

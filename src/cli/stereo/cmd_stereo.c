@@ -14,6 +14,7 @@
 #include "cli/stage_bar.h"
 #include "cli/stereo/stereo_commands.h"
 #include "cli/stereo/stereo_output.h"
+#include "cli/stereo/stereo_universal.h"
 #include "cli/written.h"
 #include "command/check_files.h"
 #include "command/cli.h"
@@ -30,8 +31,10 @@ static const char help[] =
     "       merlin stereo PHOTO|MAPS [options]\n"
     "       merlin stereo calibrate --sphere chrome|matte DIR [options]\n\n"
     "Normals, albedo and the surface of an object by photometric stereo: from a folder of pictures, each under one\n"
-    "light (lights.txt, an .lp file, the LUCES or the DiLiGenT layout), or from one photograph, relit by the model\n"
-    "under 50 lights. MAPS is a folder made by merlin estimate, or its maps.exr: the photograph is not estimated\n"
+    "light (lights.txt, an .lp file, the LUCES or the DiLiGenT layout; without such a list the model sees the "
+    "pictures\n"
+    "together, and all is written that merlin estimate writes), or from one photograph, relit by the model under 50\n"
+    "lights. MAPS is a folder made by merlin estimate, or its maps.exr: the photograph is not estimated\n"
     "again. A PHOTO may be -, standard input. calibrate finds light directions from pictures of a ball.\n\n"
     "      --lights FILE    x y z a line, in the order of the pictures' names (9.png before 10.png), or .lp, likewise\n"
     "                       where it names none of the pictures, as a dome's (default: found in DIR); equally strong,\n"
@@ -45,8 +48,11 @@ static const char help[] =
     "      --distance D     from the camera to the object, on average, in the unit of the lights' positions (default:\n"
     "                       with --near as the lights tell, else 1); depth is in it. Wants --near or --fov\n"
     "      --method NAME    for known directions ls, robust (gloss and cast shadows) or semi (unknown strengths),\n"
-    "                       near for positions, uncalibrated without lights; auto (default): near with --near,\n"
-    "                       else robust; of one photograph near (default) or uncalibrated\n"
+    "                       near for positions; without lights universal (by a model of any light; from seven "
+    "pictures\n"
+    "                       on the lights are found) or uncalibrated (without a model); auto (default): near with "
+    "--near,\n"
+    "                       robust with lights, else universal; of one photograph near (default) or uncalibrated\n"
     "      --mask FILE      white on the object (default: mask.png, NAME.mask.png, NAME_mask.png or the like in DIR, "
     "of\n"
     "                       any picture's kind, else what is brighter than a dark background)\n"
@@ -59,7 +65,8 @@ static const char help[] =
     "      --html           write viewer.html, too: a page in which a browser lights the surface (merlin view)\n"
     "  -o, --output DIR     where to (default: stereo inside DIR, or inside the photograph's name + .merlin)\n"
     "      --model W, --size N, --views N, --exposure EV, --point X,Y, --box X,Y,W,H\n"
-    "                       for a PHOTO, as in merlin estimate; --model also for MAPS\n"
+    "                       for a PHOTO, as in merlin estimate, and for pictures without lights, except --exposure;\n"
+    "                       --model also for MAPS\n"
     "      --json           the report on standard output\n"
     "  -t, --threads N      how many threads work (default: one a processor)\n"
     "  -q, --quiet          no other output than errors\n"
@@ -76,18 +83,23 @@ typedef struct request {
     stereo_files files;
     bool maps; /* whether input is a folder of merlin estimate */
     bool near, linear, json, quiet, help;
+    bool universal; /* no lights are known, and a network sees the pictures together */
 } request;
 
 /* ---- options ---- */
 
 static status take_method(const char *name, void *into)
 {
+    request *r = into;
+    r->universal = strcmp(name, "universal") == 0;
+    if (r->universal) return OK;
     for (int m = MERLIN_STEREO_AUTO; m <= MERLIN_STEREO_UNCALIBRATED; m++)
         if (strcmp(name, merlin_stereo_method_name((merlin_stereo_method)m)) == 0) {
-            *(merlin_stereo_method *)into = (merlin_stereo_method)m;
+            r->solve.method = (merlin_stereo_method)m;
             return OK;
         }
-    return fail(MERLIN_WRONG_USE, "--method wants ls, robust, near, semi, uncalibrated or auto, not \"%s\"", name);
+    return fail(MERLIN_WRONG_USE, "--method wants ls, robust, near, semi, universal, uncalibrated or auto, not \"%s\"",
+                name);
 }
 
 static status take_distance(const char *text, void *into)
@@ -137,13 +149,23 @@ static status check_maps(const request *r)
     return fail(MERLIN_BAD_INPUT, "%s holds a captured surface, not the maps of one photograph to relight", r->input);
 }
 
+/* Refuses options of the network where none sees the pictures. */
+static status check_no_network(const request *r)
+{
+    if (!r->weights && !photo_params_given(&r->params)) return OK;
+    return fail(MERLIN_WRONG_USE,
+                "--model, --size, --views, --exposure, --point and --box are for one photograph, or pictures without a "
+                "list of lights");
+}
+
 static status check(request *r)
 {
     const merlin_capture_files *o = &r->capture;
-    if (r->solve.method == MERLIN_STEREO_UNCALIBRATED) r->capture.unknown_lights = 1;
+    if (r->universal || r->solve.method == MERLIN_STEREO_UNCALIBRATED) r->capture.unknown_lights = 1;
+    r->capture.lights_optional = r->solve.method == MERLIN_STEREO_AUTO;
     if ((o->lights || o->near_lights) && o->unknown_lights)
-        return fail(MERLIN_WRONG_USE,
-                    "--method uncalibrated takes no --lights and no --near: it finds both kinds of lights");
+        return fail(MERLIN_WRONG_USE, "--method %s takes no --lights and no --near: it finds both kinds of lights",
+                    r->universal ? "universal" : "uncalibrated");
     status s = o->lights ? OK : look_for_maps(r->input, &r->maps);
     if (s != OK) return s;
     bool is_one_photo = file_exists(r->input) && !is_capture(r);
@@ -153,14 +175,17 @@ static status check(request *r)
                     "--lights, --near, --fov, --distance, --ambient and --linear are for a folder of pictures");
     bool is_distant = r->solve.method == MERLIN_STEREO_LS || r->solve.method == MERLIN_STEREO_ROBUST ||
                       r->solve.method == MERLIN_STEREO_SEMI;
+    if (is_one_photo && r->universal) return fail(MERLIN_WRONG_USE, "--method universal is for a folder of pictures");
     if (is_one_photo && is_distant)
         return fail(MERLIN_WRONG_USE,
                     "--method %s is for distant lights, and one photograph is relit by near ones: use near",
                     merlin_stereo_method_name(r->solve.method));
     if (r->maps) return check_maps(r);
-    if (is_capture(r) && (r->weights || photo_params_given(&r->params)))
-        return fail(MERLIN_WRONG_USE,
-                    "--model, --size, --views, --exposure, --point and --box are for one photograph, not for a folder");
+    const bool may_lack_lights = r->solve.method == MERLIN_STEREO_AUTO && !o->lights && !o->near_lights;
+    if (is_capture(r) && !may_lack_lights) s = check_no_network(r);
+    if (s == OK && is_capture(r) && !r->params.auto_exposure)
+        s = fail(MERLIN_WRONG_USE, "--exposure is for one photograph, not for a folder");
+    if (s != OK) return s;
     return photo_check_hint(&r->params.hint, o->mask, false);
 }
 
@@ -171,7 +196,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"near", .flag = &r->near},
         {"fov", .real = &r->capture.field_of_view, .low = 1, .high = 170},
         {"distance", .take = take_distance, .into = &r->capture.distance},
-        {"method", .take = take_method, .into = &r->solve.method},
+        {"method", .take = take_method, .into = r},
         {"mask", .text = &r->capture.mask},
         {"point", .take = photo_take_point, .into = &r->params.hint, .many = true},
         {"box", .take = photo_take_box, .into = &r->params.hint},
@@ -201,15 +226,6 @@ static status parse(int *argc, char ***argv, request *r)
 }
 
 /* ---- the work ---- */
-
-static status from_folder(const request *r, merlin_surface *out)
-{
-    merlin_capture *capture;
-    status s = merlin_capture_read(r->input, &r->capture, &capture);
-    if (s == OK) s = merlin_stereo(capture, &r->solve, out);
-    merlin_capture_free(capture);
-    return s;
-}
 
 static status from_photo(const request *r, merlin_surface *out)
 {
@@ -283,9 +299,67 @@ static void plan(const request *r, stage_bar *bar)
     stage_bar_plan(bar, is_capture(r) ? folder : photo, sizeof folder / sizeof *folder);
 }
 
-static status solve_and_write(request *r, const char *output, merlin_surface *surface, staged_files *written)
+/* Writes the surface and reports it. */
+static status write_surface(const request *r, const stereo_files *files, const watch *shown, merlin_surface *surface,
+                            double began)
+{
+    staged_files written = {0};
+    surface->seconds.total = clock_seconds() - began;
+    watch_tell(shown, "writing", 0);
+    status s = cli_interrupted() ? fail(MERLIN_STOPPED, "stopped") : stereo_write(files, surface, &written);
+    if (s == OK) s = announce(r, files->folder, surface, &written, clock_seconds() - began);
+    merlin_files_free(&written);
+    return s;
+}
+
+/* Makes maps of pictures whose lights nobody knows. */
+static status see_together(const request *r, const merlin_capture *capture, const stereo_files *files, stage_bar *bar,
+                           const watch *shown, double began)
+{
+    universal_request u = {.input = r->input,
+                           .weights = r->weights,
+                           .files = files,
+                           .params = r->params,
+                           .json = r->json,
+                           .quiet = r->quiet,
+                           .bar = bar,
+                           .watch = shown,
+                           .began = began};
+    u.params.fov = r->capture.field_of_view;
+    u.params.progress = shown->tell;
+    u.params.progress_context = shown->context;
+    u.params.stop = shown->stop;
+    return stereo_universal(&u, capture);
+}
+
+static bool sees_together(const request *r, const merlin_capture *capture)
+{
+    const bool unknown = capture && merlin_capture_lighting(capture) == MERLIN_UNKNOWN_LIGHTS;
+    return r->universal || (unknown && r->solve.method == MERLIN_STEREO_AUTO);
+}
+
+static status solve_and_write(request *r, const stereo_files *files, stage_bar *bar, const watch *shown)
 {
     const double began = clock_seconds();
+    merlin_capture *capture = NULL;
+    merlin_surface surface = {0};
+    status s = is_capture(r) ? merlin_capture_read(r->input, &r->capture, &capture) : OK;
+    if (s == OK && sees_together(r, capture)) {
+        s = see_together(r, capture, files, bar, shown, began);
+    } else if (s == OK) {
+        s = capture ? check_no_network(r) : OK;
+        if (s == OK) s = capture ? merlin_stereo(capture, &r->solve, &surface) : from_photo(r, &surface);
+        merlin_capture_free(capture);
+        capture = NULL;
+        if (s == OK) s = write_surface(r, files, shown, &surface, began);
+    }
+    merlin_capture_free(capture);
+    merlin_surface_free(&surface);
+    return s;
+}
+
+static status work(request *r, const char *output)
+{
     stage_bar bar;
     stage_bar_begin(&bar, r->quiet);
     plan(r, &bar);
@@ -293,31 +367,14 @@ static status solve_and_write(request *r, const char *output, merlin_surface *su
     r->capture.progress = r->solve.progress = shown.tell;
     r->capture.progress_context = r->solve.progress_context = shown.context;
     r->capture.stop = r->solve.stop = shown.stop;
-    status s = is_capture(r) ? from_folder(r, surface) : from_photo(r, surface);
-    if (s == OK) {
-        surface->seconds.total = clock_seconds() - began;
-        stereo_files files = r->files;
-        files.folder = output;
-        files.input = r->input;
-        files.inputs =
-            (const char *const[STAGING_MOST_INPUTS]){r->input, r->capture.mask, r->capture.ambient, r->capture.lights};
-        files.stop = cli_interrupted;
-        watch_tell(&shown, "writing", 0);
-        s = cli_interrupted() ? fail(MERLIN_STOPPED, "stopped") : stereo_write(&files, surface, written);
-    }
+    stereo_files files = r->files;
+    files.folder = output;
+    files.input = r->input;
+    files.inputs =
+        (const char *const[STAGING_MOST_INPUTS]){r->input, r->capture.mask, r->capture.ambient, r->capture.lights};
+    files.stop = cli_interrupted;
+    status s = solve_and_write(r, &files, &bar, &shown);
     stage_bar_end(&bar);
-    return s;
-}
-
-static status work(request *r, const char *output)
-{
-    const double began = clock_seconds();
-    merlin_surface surface = {0};
-    staged_files written = {0};
-    status s = solve_and_write(r, output, &surface, &written);
-    if (s == OK) s = announce(r, output, &surface, &written, clock_seconds() - began);
-    merlin_files_free(&written);
-    merlin_surface_free(&surface);
     return s == MERLIN_STOPPED ? fail(s, "interrupted; nothing was written to %s", output) : s;
 }
 

@@ -150,6 +150,10 @@ static char *compose(const merlin_maps *maps)
     merlin_maps_warnings(maps, &doubts);
     cJSON *root = report_begin(&doubts);
     json_put_text(root, "model", maps->model);
+    if (maps->photographs > 1) {
+        json_put_number(root, "photographs", maps->photographs);
+        json_put_bool(root, "refined", maps->refined != 0);
+    }
     json_put_number(root, "width", maps->albedo.width);
     json_put_number(root, "height", maps->albedo.height);
     cJSON *square = json_put_object(root, "crop");

@@ -20,7 +20,7 @@
 static const float MUCH_BURNT_OUT = 0.1f, MUCH_CUT = 0.25f, LIKELY_ELSEWHERE = 0.6f;
 static const float FULL = 0.97f, FULL_IF_FOUND = 0.66f, NARROW = 5, WIDE = 95;
 static const float DARK = 0.02f, LITTLE_OUTWARD = 0.1f, MUCH_INWARD = 0.4f, MUCH_FLAT = 0.6f;
-enum { SMALL = 2500, FEW_SHADES = 48 };
+enum { SMALL = 2500, FEW_SHADES = 48, PHOTOGRAPHS_ENOUGH = 7 };
 
 /* ---- the mask ---- */
 
@@ -180,6 +180,7 @@ static const struct {
     {MERLIN_DOUBT_ALBEDO_CLAMPED, "albedo_clamped"},
     {MERLIN_DOUBT_ROUGHNESS_CLAMPED, "roughness_clamped"},
     {MERLIN_DOUBT_DEPTH_CLAMPED, "depth_clamped"},
+    {MERLIN_DOUBT_NOT_REFINED, "not_refined"},
 };
 enum { NAMES = sizeof names / sizeof *names };
 
@@ -298,6 +299,13 @@ int merlin_doubt_message(const merlin_maps *maps, merlin_doubt doubt, char *text
                         maps->reduced);
     case MERLIN_DOUBT_FIRST_FRAME:
         return snprintf(text, room, "it is an animation, of whose %d pictures the first alone was read", maps->frames);
+    case MERLIN_DOUBT_NOT_REFINED:
+        return snprintf(text, room,
+                        "%s: shape is the network's alone, whose normals are off by 15 to 25 degrees; more pictures, "
+                        "under lights from more sides, give a better one",
+                        maps->photographs < PHOTOGRAPHS_ENOUGH
+                            ? "photometric stereo needs 7 pictures under unknown lights"
+                            : "photometric stereo does not find the lights of these pictures");
     case MERLIN_DOUBT_OBJECT_SMALL:
         return snprintf(text, room, "the object has %zu pixels alone, of the 65,000 that the model is made for",
                         coverage_of(maps).object);

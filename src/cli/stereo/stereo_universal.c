@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: MIT */
+#include "cli/stereo/stereo_universal.h"
+
+#include <cjson/cJSON.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "base/json/json_put.h"
+#include "base/progress.h"
+#include "cli/estimate_write.h"
+#include "cli/page.h"
+#include "cli/written.h"
+#include "command/cli.h"
+#include "command/json_line.h"
+#include "command/photos.h"
+
+/* Opens the weights that were asked for, else those for any light; flashes have no network of their own here. */
+static status open_model(const universal_request *r, merlin_model **out)
+{
+    char *weights = NULL, *flash = NULL;
+    status s = photo_find_models(r->weights, &weights, &flash);
+    if (s == OK) s = merlin_model_open(weights, out);
+    free(weights);
+    free(flash);
+    return s;
+}
+
+static status print_json(const universal_request *r, const merlin_maps *maps, const staged_files *written,
+                         double seconds)
+{
+    char *text;
+    status s = merlin_maps_report(maps, &text);
+    if (s != OK) return s;
+    cJSON *report = cJSON_Parse(text);
+    json_put_text(report, "input", r->input);
+    json_line_files(report, r->files->folder, written);
+    json_put_number(report, "seconds_total", seconds);
+    s = json_line_print(report);
+    cJSON_Delete(report);
+    free(text);
+    return s;
+}
+
+static status announce(const universal_request *r, const merlin_maps *maps, const staged_files *written, double seconds)
+{
+    enum { TOLD = 3 };
+    char amount[WRITTEN_WORDS];
+    warnings doubts;
+    status s = OK;
+    stage_bar_hide(r->bar);
+    if (r->json)
+        s = print_json(r, maps, written, seconds);
+    else if (!r->quiet)
+        printf("%s: %s (%.2f s, %s)\n", r->input, r->files->folder, seconds, written_words(written, amount));
+    merlin_maps_warnings(maps, &doubts);
+    if (r->files->page) page_doubt(maps->crop.side, 0, &doubts);
+    if (!r->quiet) warnings_print(&doubts, "stereo", r->input, TOLD);
+    return s;
+}
+
+static status write(const universal_request *r, merlin_model *model, const merlin_maps *maps, staged_files *written)
+{
+    const stereo_files *f = r->files;
+    const estimate_request as = {
+        .mesh = f->mesh.count == 0, .html = f->page, .meshes = f->mesh, .model = model, .watch = r->watch};
+    return estimate_write_files(&(estimate_write){&as, r->input, f->folder, f->inputs}, maps, true, written);
+}
+
+status stereo_universal(const universal_request *r, const merlin_capture *capture)
+{
+    merlin_model *model = NULL;
+    merlin_maps maps = {0};
+    staged_files written = {0};
+    status s = open_model(r, &model);
+    if (s == OK) s = merlin_maps_from_capture(model, capture, &r->params, &maps);
+    if (s == OK) s = write(r, model, &maps, &written);
+    if (s == OK) s = announce(r, &maps, &written, clock_seconds() - r->began);
+    merlin_files_free(&written);
+    merlin_maps_free(&maps);
+    merlin_model_close(model);
+    return s;
+}

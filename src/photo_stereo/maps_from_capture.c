@@ -1,0 +1,188 @@
+/* SPDX-License-Identifier: MIT */
+/* merlin_maps_from_capture: an object in several photographs under lights that nobody knows. A network sees them
+ * together; if photometric stereo with the network's normals as a prior explains the pictures, its normals, which are
+ * finer, replace the network's. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/api_needs.h"
+#include "base/progress.h"
+#include "estimate/photo/estimate.h"
+#include "estimate/photo/model_pair.h"
+#include "estimate/relight/maps_surface.h"
+#include "estimate/surface/fuse.h"
+#include "image/coverage.h"
+#include "photo_stereo/maps_from_capture.h"
+#include "photo_stereo/prior_stereo.h"
+#include "stereo/capture/capture.h"
+
+/* Largest number of pictures that the network sees, evenly chosen, and of its runs on one. */
+enum { SEEN = 32, RUNS = 64 };
+
+/* Mean to which pictures are scaled before their object is searched for, and the share of a picture from which on what
+ * is brighter than black is no object. */
+static const double usual_mean = 0.2, whole = 0.9;
+
+/* The pictures that the network sees. */
+typedef struct seen {
+    const merlin_capture *capture;
+    int count, number[SEEN];
+    float lights[SEEN][MODEL_LIGHTS]; /* of each, as the network predicts them */
+} seen;
+
+static seen choose(const merlin_capture *c)
+{
+    seen s = {.capture = c, .count = c->count < SEEN ? c->count : SEEN};
+    for (int i = 0; i < s.count; i++)
+        s.number[i] = (int)((long)i * c->count / s.count);
+    return s;
+}
+
+static status photograph(const seen *s, int which, img *out)
+{
+    const merlin_capture *c = s->capture;
+    const size_t pixels = (size_t)c->width * (size_t)c->height, channels = (size_t)c->channels;
+    const uint16_t *from = c->picture[s->number[which]];
+    status st = img_new(out, c->width, c->height, 3);
+    for (size_t i = 0; st == OK && i < pixels; i++)
+        for (size_t ch = 0; ch < 3; ch++)
+            out->data[3 * i + ch] = (float)from[channels * i + (ch < channels ? ch : 0)] / 65535;
+    return st;
+}
+
+static status take_further(void *context, int number, img *out)
+{
+    return photograph(context, number + 1, out);
+}
+
+static status check(const merlin_capture *c)
+{
+    if (c->count < 1) return fail(MERLIN_WRONG_USE, "the capture has no pictures");
+    if (!c->mask.data || (c->mask.width == c->width && c->mask.height == c->height)) return OK;
+    return fail(MERLIN_BAD_INPUT, "the mask is %d x %d pixels, the pictures are %d x %d", c->mask.width, c->mask.height,
+                c->width, c->height);
+}
+
+/* ---- the object ---- */
+
+static double mean_of(const img *picture)
+{
+    double sum = 0;
+    const size_t count = img_value_count(picture);
+    for (size_t i = 0; i < count; i++)
+        sum += (double)picture->data[i];
+    return sum / (double)count;
+}
+
+/* Averages the pictures, all as bright, which leaves little of their shadows. */
+static status mean_picture(const seen *s, img *out)
+{
+    status st = img_new(out, s->capture->width, s->capture->height, 3);
+    for (int k = 0; k < s->count && st == OK; k++) {
+        img picture = {0};
+        st = photograph(s, k, &picture);
+        const double mean = st == OK ? mean_of(&picture) : 0;
+        const float scale = mean > 0 ? (float)(usual_mean / (mean * s->count)) : 0;
+        for (size_t i = 0; st == OK && i < img_value_count(out); i++)
+            out->data[i] += scale * picture.data[i];
+        img_free(&picture);
+    }
+    return st;
+}
+
+static double share_inside(const img *mask)
+{
+    size_t inside = 0, count = img_value_count(mask);
+    for (size_t i = 0; i < count; i++)
+        inside += mask->data[i] >= 0.5f;
+    return (double)inside / (double)count;
+}
+
+/* Finds the object: by the capture's mask, else by what is brighter than a dark background, else by colours. */
+static status find_object(const seen *s, const merlin_hint *hint, merlin_object *out)
+{
+    const merlin_capture *c = s->capture;
+    const bool hinted = hint->point_count > 0 || hint->box.width > 0;
+    if (c->mask.data && !c->mask_found && hinted)
+        return fail(MERLIN_WRONG_USE, "the capture has a mask, and a hint where its object is");
+    img mean = {0};
+    status st = mean_picture(s, &mean);
+    if (st == OK && c->mask.data && !(c->mask_found && (hinted || share_inside(&c->mask) > whole))) {
+        st = merlin_object_find(&mean, &c->mask, NULL, out);
+        if (c->mask_found) out->source = MERLIN_MASK_FOUND;
+    } else if (st == OK) {
+        st = merlin_object_find(&mean, NULL, hint, out);
+    }
+    img_free(&mean);
+    return st;
+}
+
+/* ---- the maps ---- */
+
+/* Returns the horizontal field of view, degrees; 0: unknown. */
+static float field_of_view(const merlin_capture *c)
+{
+    if (!pinhole_is_near(&c->camera)) return c->field_of_view;
+    return 2 * atanf(0.5f * (float)c->width / c->camera.focal) / (float)DEGREE;
+}
+
+static status estimate(merlin_model *model, seen *s, const merlin_params *params, merlin_maps *maps)
+{
+    merlin_params p = *params;
+    const estimate_further further = {.count = s->count - 1, .take = take_further, .context = s, .lights = s->lights};
+    img first = {0};
+    merlin_object object = {0};
+    while (p.views > 1 && p.views * s->count > RUNS)
+        p.views--;
+    if (!(p.fov > 0)) p.fov = field_of_view(s->capture);
+    status st = photograph(s, 0, &first);
+    if (st == OK) st = find_object(s, &p.hint, &object);
+    if (st == OK) st = estimate_several(model, &first, &object, &p, &further, maps);
+    if (st == OK) maps->photographs = s->count;
+    merlin_object_free(&object);
+    img_free(&first);
+    return st;
+}
+
+/* Replaces what is doubted of one photograph's light: of several each may have another one. */
+static void doubt_several(const seen *s, merlin_maps *maps)
+{
+    if (s->count < 2) return;
+    maps->doubts &= ~(unsigned)(MERLIN_DOUBT_LIGHT_ELSEWHERE | MERLIN_DOUBT_NO_FLASH | MERLIN_DOUBT_LIGHT_BEHIND);
+    maps->doubts |= MERLIN_DOUBT_NOT_REFINED;
+}
+
+static status refine(const seen *s, const merlin_params *params, merlin_maps *maps)
+{
+    vec3 *light = calloc((size_t)s->capture->count, sizeof *light);
+    if (!light) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", s->capture->count);
+    for (int i = 0; i < s->count; i++)
+        light[s->number[i]] = vec3_of(s->lights[i] + MODEL_LIGHTS_LAMP);
+    status st = prior_stereo_refine(s->capture, light, params->stop, maps);
+    free(light);
+    return st;
+}
+
+merlin_status merlin_maps_from_capture(merlin_model *model, const merlin_capture *capture, const merlin_params *params,
+                                       merlin_maps *maps)
+{
+    const merlin_params usual = merlin_params_default();
+    if (maps) *maps = (merlin_maps){0};
+    status s = api_needs(__func__, model && capture && maps);
+    return s == OK ? maps_of_capture(model, capture, params ? params : &usual, true, maps) : s;
+}
+
+status maps_of_capture(merlin_model *model, const merlin_capture *capture, const merlin_params *params, bool refined,
+                       merlin_maps *maps)
+{
+    *maps = (merlin_maps){0};
+    status s = check(capture);
+    if (s != OK) return s;
+    seen pictures = choose(capture);
+    s = estimate(model, &pictures, params, maps);
+    if (s == OK) doubt_several(&pictures, maps);
+    if (s == OK && refined) s = refine(&pictures, params, maps);
+    if (s != OK) merlin_maps_free(maps);
+    return s;
+}

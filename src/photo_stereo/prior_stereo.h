@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: MIT */
+/* Photometric stereo with unknown lights and a surface that is expected: a network's.
+ *
+ *     merlin_maps_from_capture estimates maps of several pictures, then
+ *     status s = prior_stereo_refine(capture, stop, &maps); */
+#ifndef MERLIN_PHOTO_STEREO_PRIOR_STEREO_H
+#define MERLIN_PHOTO_STEREO_PRIOR_STEREO_H
+
+#include "base/status.h"
+#include "base/vec.h"
+#include "merlin/surface.h"
+
+/* Replaces the maps' normals, and the depth that agrees with them, by those of photometric stereo, if that explains the
+ * pictures by a similar surface; else leaves the maps as they are. light: as pst_expected's, in the maps' space. */
+status prior_stereo_refine(const merlin_capture *capture, const vec3 *light, int (*stop)(void), merlin_maps *maps);
+
+#endif
