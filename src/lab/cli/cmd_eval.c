@@ -26,6 +26,7 @@ static const char help[] =
     "       merlin-lab eval detail --data DIR [options]\n"
     "       merlin-lab eval lights --data DIR [options]\n"
     "       merlin-lab eval several --data DIR [options]\n"
+    "       merlin-lab eval unknown [--data DIR] [options]\n"
     "       merlin-lab eval pictures FOLDER... [options]\n"
     "       merlin-lab eval photos PHOTO|FOLDER... --model W [--model W2] -o FILE.png\n\n"
     "Measures what merlin estimate and merlin relight make by a model of samples it was not trained on (a folder made "
@@ -193,6 +194,7 @@ int cmd_eval(int argc, char **argv)
     if (argc > 1 && strcmp(argv[1], "pictures") == 0) return eval_pictures(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "lights") == 0) return eval_lights(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "several") == 0) return eval_several(argc - 1, argv + 1);
+    if (argc > 1 && strcmp(argv[1], "unknown") == 0) return eval_unknown(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "detail") == 0) return eval_detail(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "doubts") == 0) return eval_doubts(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "masks") == 0) return eval_masks(argc - 1, argv + 1);

@@ -27,5 +27,7 @@ int eval_pictures(int argc, char **argv);
 int eval_lights(int argc, char **argv);
 /* Runs merlin-lab eval several; argv[0] is "several". Returns the exit status. */
 int eval_several(int argc, char **argv);
+/* Runs merlin-lab eval unknown; argv[0] is "unknown". Returns the exit status. */
+int eval_unknown(int argc, char **argv);
 
 #endif

@@ -1,0 +1,163 @@
+/* SPDX-License-Identifier: MIT */
+#include "lab/eval/stereo/unknown_table.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/file.h"
+#include "base/progress.h"
+#include "lab/eval/metrics/normal_frame.h"
+#include "lab/eval/stereo/rendered_capture.h"
+#include "lab/eval/stereo/stereo_object.h"
+#include "lab/scene/material/material.h"
+#include "optics/camera.h"
+#include "photo_stereo/maps_from_capture.h"
+#include "stereo/integrate/surface_error.h"
+#include "stereo/methods/solve.h"
+
+typedef struct run {
+    const unknown_options *options;
+    merlin_model *model;
+    progress bar;
+    size_t done;
+} run;
+
+int unknown_row_pictures(const unknown_object *o, int row)
+{
+    const int wanted = 1 << row;
+    if (row == UNKNOWN_ROWS - 1) return o->pictures & (o->pictures - 1) || o->pictures >= wanted ? o->pictures : 0;
+    return wanted <= o->pictures ? wanted : 0;
+}
+
+/* Borrows so many of the pictures, evenly chosen, without their lights. */
+static status choose(const merlin_capture *all, int count, merlin_capture *out)
+{
+    *out = *all;
+    out->count = count;
+    out->lighting = MERLIN_UNKNOWN_LIGHTS;
+    out->picture = calloc((size_t)count, sizeof *out->picture);
+    out->light = calloc((size_t)count, sizeof *out->light);
+    out->name = NULL;
+    for (int i = 0; i < count && out->picture; i++)
+        out->picture[i] = all->picture[(long)i * all->count / count];
+    for (int i = 0; i < count && out->light; i++)
+        out->light[i].intensity[0] = out->light[i].intensity[1] = out->light[i].intensity[2] = 1;
+    return out->picture && out->light ? OK : fail(MERLIN_NO_MEMORY, "no memory for %d pictures", count);
+}
+
+static status solve(const run *r, const merlin_capture *c, unknown_way way, img *normal)
+{
+    merlin_params params = merlin_params_default();
+    params.views = r->options->views;
+    params.stop = r->options->stopped;
+    if (way == UNKNOWN_UNCALIBRATED) {
+        const merlin_stereo_params how = {.method = MERLIN_STEREO_UNCALIBRATED, .stop = r->options->stopped};
+        merlin_surface found;
+        status s = pst_solve(c, &how, &found);
+        if (s != OK) return s;
+        *normal = found.normal;
+        found.normal = (img){0};
+        merlin_surface_free(&found);
+        return OK;
+    }
+    merlin_maps maps;
+    status s = maps_of_capture(r->model, c, &params, way == UNKNOWN_REFINED, &maps);
+    if (s != OK) return s;
+    *normal = maps.normal;
+    maps.normal = (img){0};
+    merlin_maps_free(&maps);
+    return OK;
+}
+
+/* A capture that a solver can make nothing of is a result, too. */
+static status measure(run *r, const stereo_object *o, int count, double error[UNKNOWN_WAYS])
+{
+    merlin_capture c;
+    status s = choose(&o->capture, count, &c);
+    for (int way = 0; way < UNKNOWN_WAYS && s == OK; way++) {
+        img normal = {0};
+        s = r->options->stopped && r->options->stopped() ? fail(MERLIN_STOPPED, "stopped")
+                                                         : solve(r, &c, (unknown_way)way, &normal);
+        if (s == OK) error[way] = normal_mean_angle(&normal, &o->capture, NULL);
+        if (s == MERLIN_BAD_INPUT) s = OK;
+        img_free(&normal);
+        progress_update(&r->bar, ++r->done, o->name);
+    }
+    free(c.picture);
+    free(c.light);
+    return s;
+}
+
+/* Renders an object under distant lights, as seen from afar. */
+static status render(const run *r, size_t index, stereo_object *out)
+{
+    const rendered how = {.size = STEREO_OBJECT_SIDE, .lights = UNKNOWN_LIGHTS, .strata = 2, .exposure = 2};
+    scene_object object;
+    *out = (stereo_object){.name = ""};
+    status s = scene_object_generate(r->options->seed, index, CAMERA_FOV, &object);
+    if (s != OK) return s;
+    object.material->bumps = 0; /* relief finer than a pixel has no single normal */
+    snprintf(out->name, sizeof out->name, "%zu %.20s", index, object.shape);
+    s = rendered_capture(&how, &object, &out->capture);
+    scene_object_free(&object);
+    return s;
+}
+
+/* path: NULL for a rendered object. */
+static status measure_object(run *r, const char *path, size_t index, unknown_object *out)
+{
+    stereo_object o;
+    status s = path ? stereo_object_read(path, &o) : render(r, index, &o);
+    if (s != OK) return s;
+    snprintf(out->name, sizeof out->name, "%s", o.name);
+    out->pictures = o.capture.count;
+    for (int row = 0; row < UNKNOWN_ROWS; row++) {
+        for (int way = 0; way < UNKNOWN_WAYS; way++)
+            out->error[row][way] = (double)NAN;
+        const int count = unknown_row_pictures(out, row);
+        if (count > 0 && s == OK) s = measure(r, &o, count, out->error[row]);
+    }
+    stereo_object_free(&o);
+    return s == OK || s == MERLIN_STOPPED ? s : fail_in(s, "%s", out->name);
+}
+
+static status measure_all(run *r, char **path, unknown_table *out)
+{
+    out->object = calloc(out->count, sizeof *out->object);
+    if (!out->object) return fail(MERLIN_NO_MEMORY, "no memory for a table of %zu objects", out->count);
+    status s = merlin_model_open(r->options->weights, &r->model);
+    if (s != OK) return s;
+    snprintf(out->model, sizeof out->model, "%s", merlin_model_name(r->model));
+    const size_t solutions = (size_t)UNKNOWN_ROWS * UNKNOWN_WAYS;
+    progress_begin(&r->bar, "unknown lights", "solutions", 0, out->count * solutions, r->options->quiet);
+    for (size_t i = 0; i < out->count && s == OK; i++) {
+        s = measure_object(r, path ? path[i] : NULL, i, &out->object[i]);
+        r->done = (i + 1) * solutions;
+    }
+    progress_end(&r->bar);
+    merlin_model_close(r->model);
+    return s;
+}
+
+status unknown_table_run(const unknown_options *options, unknown_table *out)
+{
+    *out = (unknown_table){.count = 0};
+    const double began = clock_seconds();
+    run r = {.options = options};
+    char **path = NULL;
+    size_t count = options->count ? options->count : UNKNOWN_RENDERED;
+    status s = options->data ? stereo_object_list(options->data, &path, &count) : OK;
+    if (s != OK) return s;
+    out->count = options->count && options->count < count ? options->count : count;
+    s = measure_all(&r, path, out);
+    if (path) file_list_free(path, count);
+    out->seconds = clock_seconds() - began;
+    if (s != OK) unknown_table_free(out);
+    return s;
+}
+
+void unknown_table_free(unknown_table *t)
+{
+    free(t->object);
+    *t = (unknown_table){.count = 0};
+}
