@@ -40,7 +40,7 @@ _merlin() {
         mapfile -t COMPREPLY < <(compgen -P "$before" -W "albedo normal roughness smoothness ao orm height height32 alpha materialx all" -- "${current##*,}")
         ;;
     --format) mapfile -t COMPREPLY < <(compgen -W "png jpg" -- "$current") ;;
-    --method) mapfile -t COMPREPLY < <(compgen -W "ls robust near semi uncalibrated auto" -- "$current") ;;
+    --method) mapfile -t COMPREPLY < <(compgen -W "ls robust near semi universal uncalibrated auto" -- "$current") ;;
     --integrate) mapfile -t COMPREPLY < <(compgen -W "ls edges" -- "$current") ;;
     --sphere) mapfile -t COMPREPLY < <(compgen -W "chrome matte" -- "$current") ;;
     --precision) mapfile -t COMPREPLY < <(compgen -W "float32 bfloat16" -- "$current") ;;

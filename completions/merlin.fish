@@ -55,7 +55,7 @@ for program in merlin merlin-lab
     complete -c $program -n '__merlin_previous --normal-y' -f -a 'up down'
     complete -c $program -n '__merlin_previous --maps' -f -a '(__merlin_list albedo normal roughness smoothness ao orm height height32 alpha materialx all)'
     complete -c $program -n '__merlin_previous --format' -f -a 'png jpg'
-    complete -c $program -n '__merlin_previous --method' -f -a 'ls robust near semi uncalibrated auto'
+    complete -c $program -n '__merlin_previous --method' -f -a 'ls robust near semi universal uncalibrated auto'
     complete -c $program -n '__merlin_previous --integrate' -f -a 'ls edges'
     complete -c $program -n '__merlin_previous --sphere' -f -a 'chrome matte'
     complete -c $program -n '__merlin_previous --precision' -f -a 'float32 bfloat16'

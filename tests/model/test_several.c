@@ -176,12 +176,43 @@ static void objects_do_not_see_each_other_and_photographs_do(void **state)
     nn_params_free(params);
 }
 
+/* Of a matte surface what is left is the cosines, whatever its albedo and the pictures' exposures; a pixel that is
+ * black in all pictures, or of one picture alone, has no share. */
+static void shares_do_without_albedo_and_exposure(void **state)
+{
+    (void)state;
+    enum { SHARES = 3, COUNT = 4 };
+    static const float cosine[SHARES][COUNT] = {{1, 0.5f, 0, 0.5f}, {0.2f, 0.9f, 0, 0.9f}, {0, 0.6f, 0, 1.4f}};
+    static const float albedo[COUNT] = {0.9f, 0.1f, 0.5f, 0.4f}, exposure[SHARES] = {1, 0.3f, 2};
+    float images[SHARES * COUNT * 3], shares[SHARES * COUNT];
+    for (int k = 0; k < SHARES; k++)
+        for (int i = 0; i < 3 * COUNT; i++)
+            images[3 * COUNT * k + i] = sqrtf(exposure[k] * albedo[i / 3] * cosine[k][i / 3]);
+    model_encode_shares(images, SHARES, COUNT, shares);
+    for (int i = 0; i < COUNT; i++) {
+        double light[SHARES], squares = 0;
+        for (int k = 0; k < SHARES; k++) {
+            double mean = 0;
+            for (int j = 0; j < COUNT; j++)
+                mean += (double)(albedo[j] * cosine[k][j]) / COUNT;
+            light[k] = (double)cosine[k][i] / mean;
+            squares += light[k] * light[k] / SHARES;
+        }
+        for (int k = 0; k < SHARES; k++)
+            assert_float_equal(shares[COUNT * k + i], i == 2 ? 0 : light[k] / sqrt(squares) - 1, 1e-5);
+    }
+    model_encode_shares(images, 1, COUNT, shares);
+    for (int i = 0; i < COUNT; i++)
+        assert_true(shares[i] == 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_photograph_gives_what_the_network_of_one_gives),
         cmocka_unit_test(the_order_of_photographs_does_not_matter),
         cmocka_unit_test(objects_do_not_see_each_other_and_photographs_do),
+        cmocka_unit_test(shares_do_without_albedo_and_exposure),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,6 +11,7 @@
 #include "base/progress.h"
 #include "lab/train/checkpoint.h"
 #include "lab/train/train_programs.h"
+#include "lab/train/train_rates.h"
 
 typedef struct paths {
     char *checkpoint, *curves, *validation, *chart, *weights, *seconds;
@@ -182,25 +183,6 @@ static status load_weights(nn_params *params, const train_options *o)
     return s;
 }
 
-/* Slows down what the model of one photograph has, too. */
-static status slow_single(run *r)
-{
-    const float scale = (float)r->training.single_rate_scale;
-    if (scale == 1) return OK;
-    model_config single = r->model;
-    nn_graph *graph = NULL;
-    nn_params *names = NULL;
-    single.several = false;
-    status s = model_build(&single, MODEL_WHOLE, &graph);
-    if (s == OK) s = nn_params_new(graph, 0, &names);
-    nn_param *p;
-    for (size_t i = 0; s == OK && (p = nn_params_at(r->params, i)); i++)
-        if (nn_params_find(names, p->name)) p->learning_rate_scale *= scale;
-    nn_params_free(names);
-    nn_graph_free(graph);
-    return s;
-}
-
 static status build(run *r)
 {
     const train_config *c = &r->training;
@@ -217,9 +199,7 @@ static status build(run *r)
     status s = model_build(&r->model, part_of(c), &r->graph);
     if (s == OK) s = nn_params_new(r->graph, (uint64_t)c->seed, &r->params);
     if (s == OK) s = load_weights(r->params, r->options);
-    if (s != OK) return s;
-    nn_params_scale_rate(r->params, "encoder.", (float)c->encoder_rate_scale);
-    s = slow_single(r);
+    if (s == OK) s = train_rates_set(&r->model, c, r->params);
     if (s == OK) s = nn_adam_new(r->params, &adam, &r->adam);
     if (s == OK && c->average_decay > 0) s = train_average_new(r->params, c->average_decay, &r->average);
     if (s == OK) s = train_programs_new(r->graph, r->params, &options, &source, most, &r->programs);
