@@ -300,13 +300,14 @@ static void plan(const request *r, stage_bar *bar)
 }
 
 /* Writes the surface and reports it. */
-static status write_surface(const request *r, const stereo_files *files, const watch *shown, merlin_surface *surface,
-                            double began)
+static status write_surface(const request *r, const stereo_files *files, stage_bar *bar, const watch *shown,
+                            merlin_surface *surface, double began)
 {
     staged_files written = {0};
     surface->seconds.total = clock_seconds() - began;
     watch_tell(shown, "writing", 0);
     status s = cli_interrupted() ? fail(MERLIN_STOPPED, "stopped") : stereo_write(files, surface, &written);
+    stage_bar_hide(bar);
     if (s == OK) s = announce(r, files->folder, surface, &written, clock_seconds() - began);
     merlin_files_free(&written);
     return s;
@@ -351,7 +352,7 @@ static status solve_and_write(request *r, const stereo_files *files, stage_bar *
         if (s == OK) s = capture ? merlin_stereo(capture, &r->solve, &surface) : from_photo(r, &surface);
         merlin_capture_free(capture);
         capture = NULL;
-        if (s == OK) s = write_surface(r, files, shown, &surface, began);
+        if (s == OK) s = write_surface(r, files, bar, shown, &surface, began);
     }
     merlin_capture_free(capture);
     merlin_surface_free(&surface);
