@@ -302,7 +302,7 @@ int merlin_doubt_message(const merlin_maps *maps, merlin_doubt doubt, char *text
     case MERLIN_DOUBT_NOT_REFINED:
         return snprintf(text, room,
                         "%s: shape is the network's alone, whose normals are off by 15 to 25 degrees; more pictures, "
-                        "under lights from more sides, give a better one",
+                        "all from one place, under lights from more sides, give a better one",
                         maps->photographs < PHOTOGRAPHS_ENOUGH
                             ? "photometric stereo needs 7 pictures under unknown lights"
                             : "photometric stereo does not find the lights of these pictures");
