@@ -110,8 +110,8 @@ static void a_network_of_one_photograph_gives_the_mean(void **state)
         assert_int_equal(network_estimate(f->single, &f->photo[k], &f->mask, &how, 1, NULL, &each[k]), OK);
     assert_int_equal(network_estimate_several(f->single, f->photo, 2, &f->mask, &how, 1, NULL, lights, &mean), OK);
     for (int i = 0; i < 3 * PIXELS; i++)
-        assert_float_equal(mean.maps.albedo.data[i],
-                           0.5f * (each[0].maps.albedo.data[i] + each[1].maps.albedo.data[i]), 1e-3);
+        assert_float_equal(mean.maps.albedo.data[i], 0.5f * (each[0].maps.albedo.data[i] + each[1].maps.albedo.data[i]),
+                           1e-3);
     for (int k = 0; k < 2; k++) {
         assert_memory_equal(lights[k], each[k].lights, sizeof lights[k]);
         network_estimation_free(&each[k]);

@@ -106,7 +106,8 @@ static void one_picture_is_a_photograph(void **state)
     capture_drop(&c);
 }
 
-/* Whoever found the lights, the maps are whole: unit normals that the depth agrees with, no reconstruction of others. */
+/* Whoever found the lights, the maps are whole: unit normals that the depth agrees with, no reconstruction of others.
+ */
 static void refined_maps_are_whole(void **state)
 {
     const fixture *f = *state;

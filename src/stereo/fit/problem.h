@@ -30,10 +30,10 @@ typedef struct pst_problem {
     const merlin_light *light; /* count; intensities above 0. The capture's own unless a solver has found better ones */
     uint32_t *pixel;           /* indices of the mask's pixels, rows from the top; NULL for ls, which processes all */
     size_t pixel_count;
-    float saturation;   /* share of full scale below which values are usable */
-    int iterations;     /* 0: the solver's default */
+    float saturation;             /* share of full scale below which values are usable */
+    int iterations;               /* 0: the solver's default */
     const pst_expected *expected; /* for unknown lights; NULL: nothing */
-    pst_effort *effort;  /* may be NULL */
+    pst_effort *effort;           /* may be NULL */
 } pst_problem;
 
 /* Checks directions, which must be unit: fewer than 3 lights, or all in a plane through the origin, are refused. */
