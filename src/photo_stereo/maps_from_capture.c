@@ -4,15 +4,10 @@
  * finer, replace the network's. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/api_needs.h"
-#include "base/progress.h"
 #include "estimate/photo/estimate.h"
 #include "estimate/photo/model_pair.h"
-#include "estimate/relight/maps_surface.h"
-#include "estimate/surface/fuse.h"
-#include "image/coverage.h"
 #include "photo_stereo/maps_from_capture.h"
 #include "photo_stereo/prior_stereo.h"
 #include "stereo/capture/capture.h"
