@@ -133,7 +133,8 @@ DISTANT_LIGHTS, NEAR_LIGHTS, UNKNOWN_LIGHTS = range(3)
 Light = _struct("light", [("direction", floats3), ("position", floats3), ("intensity", floats3), ("lobe", c_float)])
 CaptureFiles = _struct("capture_files", [
     ("lights", c_char_p), ("mask", c_char_p), ("ambient", c_char_p), ("near_lights", c_int),
-    ("unknown_lights", c_int), ("lights_optional", c_int), ("linear", c_int), ("field_of_view", c_float), ("distance", c_float), *_WATCH])
+    ("unknown_lights", c_int), ("lights_optional", c_int), ("linear", c_int), ("field_of_view", c_float),
+    ("distance", c_float), *_WATCH])
 CaptureParams = _struct("capture_params", [
     ("lighting", c_int), ("unknown_intensities", c_int), ("field_of_view", c_float), ("distance", c_float)])
 STEREO_AUTO, STEREO_LS, STEREO_ROBUST, STEREO_NEAR, STEREO_SEMI, STEREO_UNCALIBRATED = range(6)

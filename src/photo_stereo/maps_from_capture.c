@@ -94,22 +94,27 @@ static double share_inside(const img *mask)
     return (double)inside / (double)count;
 }
 
+/* Searches for the object in all pictures. */
+static status search_object(const seen *s, const merlin_hint *hint, merlin_object *out)
+{
+    img mean = {0};
+    status st = mean_picture(s, &mean);
+    if (st == OK) st = merlin_object_find(&mean, NULL, hint, out);
+    img_free(&mean);
+    return st;
+}
+
 /* Finds the object: by the capture's mask, else by what is brighter than a dark background, else by colours. */
-static status find_object(const seen *s, const merlin_hint *hint, merlin_object *out)
+static status find_object(const seen *s, const img *first, const merlin_hint *hint, merlin_object *out)
 {
     const merlin_capture *c = s->capture;
     const bool hinted = hint->point_count > 0 || hint->box.width > 0;
     if (c->mask.data && !c->mask_found && hinted)
         return fail(MERLIN_WRONG_USE, "the capture has a mask, and a hint where its object is");
-    img mean = {0};
-    status st = mean_picture(s, &mean);
-    if (st == OK && c->mask.data && !(c->mask_found && (hinted || share_inside(&c->mask) > whole))) {
-        st = merlin_object_find(&mean, &c->mask, NULL, out);
-        if (c->mask_found) out->source = MERLIN_MASK_FOUND;
-    } else if (st == OK) {
-        st = merlin_object_find(&mean, NULL, hint, out);
-    }
-    img_free(&mean);
+    if (!c->mask.data || (c->mask_found && (hinted || share_inside(&c->mask) > whole)))
+        return search_object(s, hint, out);
+    status st = merlin_object_find(first, &c->mask, NULL, out);
+    if (c->mask_found) out->source = MERLIN_MASK_FOUND;
     return st;
 }
 
@@ -132,7 +137,7 @@ static status estimate(merlin_model *model, seen *s, const merlin_params *params
         p.views--;
     if (!(p.fov > 0)) p.fov = field_of_view(s->capture);
     status st = photograph(s, 0, &first);
-    if (st == OK) st = find_object(s, &p.hint, &object);
+    if (st == OK) st = find_object(s, &first, &p.hint, &object);
     if (st == OK) st = estimate_several(model, &first, &object, &p, &further, maps);
     if (st == OK) maps->photographs = s->count;
     merlin_object_free(&object);

@@ -6,26 +6,21 @@
 
 #include "estimate/relight/maps_surface.h"
 #include "estimate/surface/fuse.h"
+#include "merlin/lights.h"
 #include "stereo/integrate/integrate.h"
 #include "stereo/methods/solve.h"
 
-/* Numbers of pictures from which unknown lights are found, and from which near ones are found so exactly that the
- * network's normals have no share in the result (docs/notes/several_photographs.md). */
-enum { FEWEST = 7, MANY_NEAR = 12 };
+/* Number of pictures from which near lights are found so exactly that the network's normals have no share in the result
+ * (docs/notes/several_photographs.md). */
+enum { MANY_NEAR = 12 };
 
-/* Converts a vector from the crop's camera to the photograph's, or back: the lens's axes in the crop's space are the
+/* Converts a vector from the lens's space (merlin_maps_lens_place) back to the maps', in which the lens's axes are the
  * rows of the rotation. */
-static vec3 turn(camera_slant slant, bool back, vec3 v)
+static vec3 from_lens(const merlin_maps *maps, vec3 v)
 {
-    const camera_plane plane = camera_plane_of(slant);
+    const camera_plane plane = camera_plane_of((camera_slant){maps->slant[0], maps->slant[1]});
     const vec3 x = plane.right, y = plane.up, z = vec3_cross(x, y);
-    if (!back) return vec3_make(vec3_dot(v, x), vec3_dot(v, y), vec3_dot(v, z));
     return vec3_fma(vec3_fma(vec3_scale(x, v.x), v.y, y), v.z, z);
-}
-
-static camera_slant slant_of(const merlin_maps *maps)
-{
-    return (camera_slant){maps->slant[0], maps->slant[1]};
 }
 
 /* Integrates normals as of a lens whose axis goes through the crop's middle, at the mean distance of the present depth.
@@ -69,7 +64,7 @@ static status take(const merlin_surface *found, bool alone, merlin_maps *maps)
     for (size_t i = 0; i < img_value_count(&maps->mask); i++) {
         if (!(maps->mask.data[i] >= 0.5f)) continue;
         float *normal = maps->normal.data + 3 * i;
-        vec3 n = turn(slant_of(maps), true, vec3_of(found->normal.data + 3 * i));
+        vec3 n = from_lens(maps, vec3_of(found->normal.data + 3 * i));
         if (!alone) n = vec3_normalize(vec3_add(n, vec3_of(normal)));
         if (vec3_dot(n, n) > 0) vec3_put(n, normal);
     }
@@ -79,7 +74,7 @@ static status take(const merlin_surface *found, bool alone, merlin_maps *maps)
     return refit_depth(maps);
 }
 
-/* What is expected, in the space of the capture's camera. */
+/* Surface and lights that are expected, in the space of the capture's camera. */
 typedef struct expectation {
     img mask, normal;
     vec3 *light;
@@ -89,14 +84,18 @@ static status expect(const merlin_maps *maps, const vec3 *light, int count, expe
 {
     *out = (expectation){.light = malloc((size_t)count * sizeof *light)};
     if (!out->light) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", count);
-    for (int i = 0; i < count; i++)
-        out->light[i] = turn(slant_of(maps), false, light[i]);
+    for (int i = 0; i < count; i++) {
+        float to[3];
+        vec3_put(light[i], to);
+        merlin_maps_lens_place(maps, to, to);
+        out->light[i] = vec3_of(to);
+    }
     status s = img_copy(&out->mask, &maps->mask);
     if (s == OK) s = img_copy(&out->normal, &maps->normal);
     for (size_t i = 0; s == OK && i < img_value_count(&out->mask); i++) {
         float *normal = out->normal.data + 3 * i;
         out->mask.data[i] = out->mask.data[i] >= 0.5f;
-        vec3_put(turn(slant_of(maps), false, vec3_of(normal)), normal);
+        merlin_maps_lens_place(maps, normal, normal);
     }
     return s;
 }
@@ -122,7 +121,7 @@ static status solve(const merlin_capture *capture, const expectation *e, int (*s
 
 status prior_stereo_refine(const merlin_capture *capture, const vec3 *light, int (*stop)(void), merlin_maps *maps)
 {
-    if (capture->count < FEWEST) return OK;
+    if (capture->count < PST_FEWEST_UNKNOWN) return OK;
     expectation e;
     merlin_surface found = {0};
     status s = expect(maps, light, capture->count, &e);

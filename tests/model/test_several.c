@@ -176,7 +176,7 @@ static void objects_do_not_see_each_other_and_photographs_do(void **state)
     nn_params_free(params);
 }
 
-/* Of a matte surface what is left is the cosines, whatever its albedo and the pictures' exposures; a pixel that is
+/* A matte surface's shares are those of its cosines, whatever its albedo and the pictures' exposures; a pixel that is
  * black in all pictures, or of one picture alone, has no share. */
 static void shares_do_without_albedo_and_exposure(void **state)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* merlin_maps_from_capture of include/merlin/surface.h, by a model of random weights: what it takes, says and refuses.
- * What it finds with weights that ship is tested in Python and by the command. */
+ * Its results with weights that ship are tested in Python and by the command. */
 #include "../estimate/weights.h"
 #include "scratch.h"
 

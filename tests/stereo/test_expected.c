@@ -21,7 +21,7 @@ static void dim_some(merlin_capture *c)
     c->intensities_known = false;
 }
 
-/* What a network may expect: flatter by this factor, and lights off by some 20 degrees. */
+/* Makes what a network may expect: flatter by this factor, and lights off by some 20 degrees. */
 static void expect(const merlin_capture *c, const vec3 *light, float flatter, expectation *out)
 {
     rng r = rng_at(8, 0, 0);

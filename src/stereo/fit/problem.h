@@ -19,7 +19,10 @@ typedef struct pst_effort {
 /* Adds fits, from any thread; only the owner reports progress. */
 void pst_effort_add(pst_effort *e, size_t fits);
 
-/* What is known from elsewhere, such as a network's estimates. */
+/* Least number of pictures under unknown lights. */
+enum { PST_FEWEST_UNKNOWN = 7 };
+
+/* Surface and lights as they are known from elsewhere, such as a network's estimates. */
 typedef struct pst_expected {
     const img *normal; /* 3 channels, unit, or zero where there is none, of the pictures' size */
     const vec3 *light; /* one per picture: the direction to its light times the probability that there is one */

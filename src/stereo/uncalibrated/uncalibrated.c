@@ -19,7 +19,7 @@
 #include "stereo/uncalibrated/inflate.h"
 #include "stereo/uncalibrated/uncalibrated_parts.h"
 
-enum { FEWEST = 7, SAMPLE = 400, ADMITTING = 192, DIFFERING = 1500 };
+enum { SAMPLE = 400, ADMITTING = 192, DIFFERING = 1500 };
 /* Ratio of near to distant lights' costs below which near ones are used, as they have one more unknown per picture and
  * a free distance. Measured on rendered objects: 0.1 to 0.7 if lights were an object's size or two away, 0.84 to 1.2 if
  * they were distant. */
@@ -292,8 +292,8 @@ status pst_solve_uncalibrated(const pst_problem *p, merlin_surface *out)
 {
     const merlin_capture *c = p->capture;
     size_t count = (size_t)c->count;
-    if (count < FEWEST)
-        return fail(MERLIN_BAD_INPUT, "unknown lights need %d or more pictures, not %d", FEWEST, c->count);
+    if (count < PST_FEWEST_UNKNOWN)
+        return fail(MERLIN_BAD_INPUT, "unknown lights need %d or more pictures, not %d", PST_FEWEST_UNKNOWN, c->count);
     merlin_capture seen = *c;
     pst_problem q = *p;
     seen.camera = perspective_of(c);
