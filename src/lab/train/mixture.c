@@ -175,16 +175,41 @@ static vec3 color_of(const train_view *v, const means *m, const train_mixture *m
     return sum;
 }
 
-void train_mixture_draw(const train_view *v, rng *r, bool further, train_camera *lens, train_mixture *out)
+train_capture train_capture_draw(rng *steady, int picture)
 {
+    train_capture c = {.torch = rng_uniform(steady) < 0.6f, .picture = picture};
+    const bool dark = rng_uniform(steady) < 0.5f;
+    const float room = draw_weight(steady);
+    c.lamp = rng_below(steady, TRAIN_LAMPS);
+    c.room = dark ? 0 : 0.5f * room;
+    c.color = draw_color(steady);
+    return c;
+}
+
+/* Lights a picture by its own lamp, which a hand holds nearer or farther, and by the surroundings of all pictures. */
+static void draw_torch(const train_view *v, const means *m, const train_capture *c, rng *r, train_mixture *out)
+{
+    const float least = 0.1f * m->flash + 1e-6f, strength = expf(rng_range(r, -0.7f, 0));
+    const int which = (c->lamp + c->picture) % v->lamp_count;
+    out->room = scaled(vec3_make(1, 1, 1), c->room / fmaxf(m->room, least));
+    out->lamp[which] = scaled(c->color, strength / fmaxf(m->lamp[which], least));
+}
+
+void train_mixture_draw(const train_view *v, rng *r, const train_capture *capture, train_camera *lens,
+                        train_mixture *out)
+{
+    const bool torch = capture && capture->torch, further = capture && capture->picture > 0;
     const means m = measure(v);
     float which = rng_uniform(r), target = expf(rng_range(r, DARKEST, BRIGHTEST)), share = rng_range(r, 0.5f, 1);
     bool known = rng_uniform(r) < 0.75f, told = rng_uniform(r) < 0.5f;
     const train_kind kind = which < 1.0f / 3 ? TRAIN_FLASH : which < 0.5f ? TRAIN_ROOM : TRAIN_MIXED;
-    *out = (train_mixture){.kind = further ? TRAIN_MIXED : kind};
+    *out = (train_mixture){.kind = torch || further ? TRAIN_MIXED : kind};
     if (out->kind == TRAIN_FLASH) out->flash = vec3_make(1, 1, 1);
     if (out->kind == TRAIN_ROOM) out->room = vec3_make(1, 1, 1);
-    if (out->kind == TRAIN_MIXED) draw_mixed(v, &m, r, out);
+    if (torch)
+        draw_torch(v, &m, capture, r, out);
+    else if (out->kind == TRAIN_MIXED)
+        draw_mixed(v, &m, r, out);
     ensure_light(v, &m, out);
     find_strongest(v, &m, out);
     out->lens_known = known;

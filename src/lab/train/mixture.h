@@ -3,7 +3,7 @@
  * surroundings. Light is additive, so that any mixture is exact.
  *
  *     train_mixture m;
- *     train_mixture_draw(&view, &rng, false, &lens, &m);
+ *     train_mixture_draw(&view, &rng, NULL, &lens, &m);
  *     status s = train_prepare_any(&view, &m, &lens, target, &rng);      after train_dataset_get
  *
  * The light that the network has to predict is stored beside the maps: see model.h, "lighting": "any". */
@@ -25,10 +25,25 @@ typedef struct train_mixture {
     float shift[2];                      /* of the picture to the right and downwards, pixels */
 } train_mixture;
 
-/* Chooses a mixture. further: of an object that has a picture already, which the same flash or surroundings alone would
- * only repeat, so that it is a mixed one. lens: as set by train_camera_draw; its gain becomes that of the exposure and
- * white balance which a camera chooses. */
-void train_mixture_draw(const train_view *v, rng *r, bool further, train_camera *lens, train_mixture *out);
+/* One of several pictures of an object. In six of ten captures each picture has one lamp of its own, as a torch that
+ * a hand moves or the lights of a dome, beside surroundings that stay as they are: what calibrates lights and compares
+ * pictures best. In the others each picture is a mixture by itself. */
+typedef struct train_capture {
+    bool torch;
+    int picture; /* index of this picture */
+    int lamp;    /* of the first picture by a torch; the following ones have the following lamps */
+    float room;  /* weight of the surroundings beside a torch */
+    vec3 color;  /* of the torch */
+} train_capture;
+
+/* Chooses what an object's pictures have in common. steady: a generator that all of them share. */
+train_capture train_capture_draw(rng *steady, int picture);
+
+/* Chooses a mixture. capture: NULL of the only picture of an object. Of several, all but the first are mixed ones, as
+ * the same flash or surroundings alone would only repeat what it shows. lens: as set by train_camera_draw; its gain
+ * becomes that of the exposure and white balance which a camera chooses. */
+void train_mixture_draw(const train_view *v, rng *r, const train_capture *capture, train_camera *lens,
+                        train_mixture *out);
 
 /* Chooses how far the hand that holds the camera has moved since the object's first picture. steady: a generator that
  * all its pictures share, as a third of all cameras stand on something; r: the picture's own. */

@@ -20,7 +20,8 @@ enum {
     TRAIN_STREAM_FAULTS = 106,
     TRAIN_STREAM_MIXTURE = 107,
     TRAIN_STREAM_PICTURES = 108,
-    TRAIN_STREAM_HAND = 109
+    TRAIN_STREAM_HAND = 109,
+    TRAIN_STREAM_CAPTURE = 110
 };
 
 /* The light of a presentation, apart from the flash. */

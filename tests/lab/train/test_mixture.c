@@ -202,7 +202,7 @@ static void kinds_come_as_often_as_they_should(void **state)
         train_camera lens = train_camera_perfect();
         train_mixture m;
         if (i % 300 == 0) assert_int_equal(train_dataset_get(f->data, (size_t)i / 300, 0, &f->view), OK);
-        train_mixture_draw(&f->view, &r, false, &lens, &m);
+        train_mixture_draw(&f->view, &r, NULL, &lens, &m);
         kinds[m.kind]++;
         lamps += m.strongest >= 0;
         told += m.told_flash;
@@ -225,10 +225,39 @@ static void further_pictures_are_mixed(void **state)
         rng r = rng_at(4, (uint64_t)i, 0);
         train_camera lens = train_camera_perfect();
         train_mixture m;
-        train_mixture_draw(&f->view, &r, true, &lens, &m);
+        train_mixture_draw(&f->view, &r, &(train_capture){.picture = 1}, &lens, &m);
         assert_int_equal(m.kind, TRAIN_MIXED);
         assert_false(m.told_flash);
     }
+}
+
+/* Each picture has one lamp, another one than the last, and all have the same surroundings. */
+static void a_torch_lights_each_picture_from_elsewhere(void **state)
+{
+    fixture *f = *state;
+    int torches = 0, rooms = 0;
+    assert_int_equal(train_dataset_get(f->data, 0, 0, &f->view), OK);
+    for (int object = 0; object < 200; object++) {
+        float room = 0;
+        int last = -1;
+        for (int picture = 0; picture < 4; picture++) {
+            rng steady = rng_at(5, (uint64_t)object, 0), r = rng_at(5, (uint64_t)(4 * object + picture), 1);
+            const train_capture capture = train_capture_draw(&steady, picture);
+            train_camera lens = train_camera_perfect();
+            train_mixture m;
+            if (!capture.torch) continue;
+            train_mixture_draw(&f->view, &r, &capture, &lens, &m);
+            assert_int_equal(m.kind, TRAIN_MIXED);
+            assert_true(m.flash.x == 0 && m.strongest >= 0 && m.strongest != last);
+            assert_true(picture == 0 || m.room.x == room);
+            last = m.strongest;
+            room = m.room.x;
+        }
+        torches += last >= 0;
+        rooms += room > 0;
+    }
+    assert_true(torches > 100 && torches < 140);
+    assert_true(rooms > 40 && rooms < 80);
 }
 
 static void exposure_leaves_neither_darkness_nor_white_alone(void **state)
@@ -240,7 +269,7 @@ static void exposure_leaves_neither_darkness_nor_white_alone(void **state)
         train_camera lens = train_camera_perfect();
         train_mixture m;
         assert_int_equal(train_dataset_get(f->data, (size_t)i % SAMPLES, 0, v), OK);
-        train_mixture_draw(v, &r, false, &lens, &m);
+        train_mixture_draw(v, &r, NULL, &lens, &m);
         if (m.kind == TRAIN_FLASH) continue;
         prepare(f, &m, &lens);
         float brightest = 0;
@@ -262,7 +291,7 @@ static void nobody_photographs_darkness(void **state)
         rng r = rng_at(10, (uint64_t)i, 0);
         train_camera lens = train_camera_perfect();
         train_mixture m;
-        train_mixture_draw(v, &r, false, &lens, &m);
+        train_mixture_draw(v, &r, NULL, &lens, &m);
         assert_true(isfinite(lens.gain[0]) && lens.gain[0] > 0 && m.flash.x > 0);
         assert_int_equal(m.strongest, -1);
     }
@@ -289,7 +318,7 @@ static void a_camera_exposes_for_what_is_lit(void **state)
         rng r = rng_at(12, (uint64_t)i, 0);
         train_camera lens = train_camera_perfect();
         train_mixture m;
-        train_mixture_draw(v, &r, false, &lens, &m);
+        train_mixture_draw(v, &r, NULL, &lens, &m);
         lamps += m.strongest >= 0;
         for (int c = 0; c < 3; c++)
             assert_true(lens.gain[c] < 2000);
@@ -363,6 +392,7 @@ int main(void)
         cmocka_unit_test(a_photograph_is_the_sum_of_its_lights),
         cmocka_unit_test(the_truth_about_a_lamp_makes_the_photograph),
         cmocka_unit_test(kinds_come_as_often_as_they_should),
+        cmocka_unit_test(a_torch_lights_each_picture_from_elsewhere),
         cmocka_unit_test(further_pictures_are_mixed),
         cmocka_unit_test(exposure_leaves_neither_darkness_nor_white_alone),
         cmocka_unit_test(nobody_photographs_darkness),
