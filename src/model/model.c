@@ -242,10 +242,10 @@ static void encode(network *n)
     nn_node *image = nn_input(g, "image", 3, 1);
     nn_node *parts[2] = {image, c->several ? nn_group_repeat(g, n->mask) : n->mask};
     nn_node *share = c->several ? nn_input(g, "share", 1, 1) : NULL, *pixel[2] = {image, share};
-    if (c->several) n->pixels = nn_space_to_depth(g, nn_compute(g, nn_concat(g, pixel, 2)), 2);
+    if (c->several && !c->only_lights) n->pixels = nn_space_to_depth(g, nn_compute(g, nn_concat(g, pixel, 2)), 2);
     const block_encoder_shape shape = {c->widths, c->encoder_blocks, n->sight, share, c->several};
     block_encoder(g, nn_concat(g, parts, 2), "encoder", &shape, n->seen);
-    for (int i = 0; i < MODEL_LEVELS; i++) {
+    for (int i = 0; i < MODEL_LEVELS && !c->only_lights; i++) {
         char name[32];
         snprintf(name, sizeof name, "encoder.level%d.fuse", i);
         n->encoder[i] = c->several ? block_fuse(g, n->seen[i], name, c->widths[i]) : n->seen[i];
@@ -262,6 +262,7 @@ static void build_network(network *n, model_part part)
     }
     encode(n);
     if (n->config->lighting == MODEL_LIGHT_ANY) n->lights = estimate_light(n, "lights.fc1", "lights.fc2", MODEL_LIGHTS);
+    if (n->config->only_lights) return;
     if (n->config->material_decoders == 1)
         material_by_one_decoder(n);
     else
@@ -302,6 +303,10 @@ static void name_features(network *n)
 static void name_outputs(const network *n)
 {
     nn_graph *g = n->g;
+    if (n->config->only_lights) {
+        nn_output(g, n->lights, "lights");
+        return;
+    }
     nn_output(g, n->maps.albedo, "albedo");
     nn_output(g, n->maps.normal, "normal");
     nn_output(g, n->maps.roughness, "roughness");
@@ -351,6 +356,7 @@ static void add_light_losses(network *n)
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
         nn_masked_l2(g, nn_slice(g, n->lights, parts[i].first, parts[i].count),
                      nn_slice(g, truth, parts[i].first, parts[i].count), parts[i].weight, parts[i].name, 0.25f);
+    if (!n->visibility) return;
     nn_masked_l2(g, n->visibility, nn_input(g, "visibility_true", 1, 1), nn_input(g, "visibility_weight", 1, 1),
                  "visibility", 1.0f);
 }
@@ -359,6 +365,10 @@ static void add_light_losses(network *n)
 static void add_losses(network *n, model_part part)
 {
     nn_graph *g = n->g;
+    if (n->config->only_lights) {
+        add_light_losses(n);
+        return;
+    }
     nn_node *mask = object_input(n, "loss_mask", 1, 1);
     nn_node *roughness = object_input(n, "roughness_true", 1, 1);
     nn_node *direct = object_input(n, "direct_true", 3, 1);

@@ -39,7 +39,9 @@
  * object"), taken from one place. Additional is the input "share" 1 (model_encode_shares). Inputs and outputs that
  * belong to a photograph are "image", "sight", "share", "lights",
  * "visibility", and the truth and weights of the latter two; all others are one for each object. With one photograph
- * the network is that of "lighting": "any" until it is trained. */
+ * the network is that of "lighting": "any" until it is trained.
+ *
+ * With "only_lights" there is no output but "lights", and there are no losses but those of it. */
 #ifndef MERLIN_MODEL_MODEL_H
 #define MERLIN_MODEL_MODEL_H
 

@@ -44,6 +44,7 @@ static status read_keys(json_object *o, const char *where, model_config *out)
     if (s == OK) s = json_bool(o, "global_illumination", &out->global_illumination);
     if (s == OK) s = json_choice(o, "lighting", lighting_words, 3, &lighting);
     if (s == OK && json_has(o, "several")) s = json_bool(o, "several", &out->several);
+    if (s == OK && json_has(o, "only_lights")) s = json_bool(o, "only_lights", &out->only_lights);
     if (s == OK) s = json_ints(o, "widths", 8, MAX_WIDTH, MODEL_LEVELS, out->widths);
     if (s == OK) s = json_ints(o, "gi_widths", 8, MAX_WIDTH, MODEL_LEVELS, out->gi_widths);
     if (s == OK) s = json_ints_or(o, "encoder_blocks", 0, MAX_BLOCKS, MODEL_LEVELS, 0, out->encoder_blocks);
@@ -56,6 +57,8 @@ static status read_keys(json_object *o, const char *where, model_config *out)
         s = fail(MERLIN_BAD_INPUT, "%s: \"feature_sharing\" needs \"relight\": \"network\"", where);
     if (s == OK && out->several && (out->lighting != MODEL_LIGHT_ANY || out->relight != MODEL_RELIGHT_BRDF))
         s = fail(MERLIN_BAD_INPUT, "%s: \"several\" needs \"lighting\": \"any\" and \"relight\": \"brdf\"", where);
+    if (s == OK && out->only_lights && out->lighting != MODEL_LIGHT_ANY)
+        s = fail(MERLIN_BAD_INPUT, "%s: \"only_lights\" needs \"lighting\": \"any\"", where);
     return s == OK ? json_finish(o) : s;
 }
 
@@ -97,15 +100,15 @@ char *model_config_write(const model_config *c)
 {
     char *text = NULL;
     const int *w = c->widths, *gi = c->gi_widths, *e = c->encoder_blocks, *m = c->material_blocks;
-    int length =
-        asprintf(&text,
-                 "{\"name\": \"%s\", \"input_global\": %s, \"material_decoders\": %d, \"feature_sharing\": %s, "
-                 "\"gated_attention\": %s, \"relight\": \"%s\", \"global_illumination\": %s, "
-                 "\"lighting\": \"%s\", \"widths\": [%d, %d, %d, %d, %d], \"gi_widths\": [%d, %d, %d, %d, %d], "
-                 "\"encoder_blocks\": [%d, %d, %d, %d, %d], \"material_blocks\": [%d, %d, %d, %d]%s}",
-                 c->name, word(c->input_global), c->material_decoders, word(c->feature_sharing),
-                 word(c->gated_attention), relight_words[c->relight], word(c->global_illumination),
-                 lighting_words[c->lighting], w[0], w[1], w[2], w[3], w[4], gi[0], gi[1], gi[2], gi[3], gi[4], e[0],
-                 e[1], e[2], e[3], e[4], m[0], m[1], m[2], m[3], c->several ? ", \"several\": true" : "");
+    int length = asprintf(
+        &text,
+        "{\"name\": \"%s\", \"input_global\": %s, \"material_decoders\": %d, \"feature_sharing\": %s, "
+        "\"gated_attention\": %s, \"relight\": \"%s\", \"global_illumination\": %s, "
+        "\"lighting\": \"%s\", \"widths\": [%d, %d, %d, %d, %d], \"gi_widths\": [%d, %d, %d, %d, %d], "
+        "\"encoder_blocks\": [%d, %d, %d, %d, %d], \"material_blocks\": [%d, %d, %d, %d]%s%s}",
+        c->name, word(c->input_global), c->material_decoders, word(c->feature_sharing), word(c->gated_attention),
+        relight_words[c->relight], word(c->global_illumination), lighting_words[c->lighting], w[0], w[1], w[2], w[3],
+        w[4], gi[0], gi[1], gi[2], gi[3], gi[4], e[0], e[1], e[2], e[3], e[4], m[0], m[1], m[2], m[3],
+        c->several ? ", \"several\": true" : "", c->only_lights ? ", \"only_lights\": true" : "");
     return length < 0 ? NULL : text;
 }

@@ -23,14 +23,15 @@ typedef struct model_config {
     bool global_illumination;
     /* the paper's settings A (point) and B (point and environment), or any light and lens */
     model_lighting lighting;
-    bool several; /* takes several pictures of the object at once, each in its own light ("lighting": "any" only) */
+    bool several;     /* takes several pictures of the object at once, each in its own light ("lighting": "any" only) */
+    bool only_lights; /* has nothing but the encoder and what says each picture's light ("lighting": "any" only) */
     int widths[MODEL_LEVELS]; /* channels at 1/2, 1/4, 1/8, 1/16, 1/32 of the size */
     int gi_widths[MODEL_LEVELS];
     int encoder_blocks[MODEL_LEVELS];      /* residual blocks after each level's convolutions */
     int material_blocks[MODEL_LEVELS - 1]; /* residual blocks after each level of the material decoders */
 } model_config;
 
-/* Parses JSON. Every key is required except the two of blocks (0 if left out) and "several"
+/* Parses JSON. Every key is required except the two of blocks (0 if left out) "several" and "only_lights"
  * (false), unknown keys are refused, values are
  * range-checked; messages name the key. */
 status model_config_parse(const char *json, size_t size, const char *where, model_config *out);

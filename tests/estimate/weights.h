@@ -26,8 +26,9 @@ static inline status write_params(const char *path, nn_params *params, const cha
     return s;
 }
 
-/* A network of configs/models, a few channels wide. */
-static inline status write_random_weights_of(const char *name, const char *path)
+/* A network of configs/models, a few channels wide, with what it shares with another one's weights; shared NULL: none.
+ */
+static inline status write_shared_weights_of(const char *name, const char *shared, const char *path)
 {
     char from[512];
     snprintf(from, sizeof from, "%s/configs/models/%s.json", MERLIN_SOURCE_DIR, name);
@@ -40,11 +41,17 @@ static inline status write_random_weights_of(const char *name, const char *path)
     char *json = s == OK ? model_config_write(&config) : NULL;
     if (s == OK) s = model_build(&config, MODEL_WHOLE, &g);
     if (s == OK) s = nn_params_new(g, 1, &params);
+    if (s == OK && shared) s = nn_params_load_shared(params, shared);
     if (s == OK) s = write_params(path, params, json);
     free(json);
     nn_params_free(params);
     nn_graph_free(g);
     return s;
+}
+
+static inline status write_random_weights_of(const char *name, const char *path)
+{
+    return write_shared_weights_of(name, NULL, path);
 }
 
 static inline status write_random_weights(const char *path)

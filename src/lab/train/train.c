@@ -157,6 +157,7 @@ static void weigh_losses_of(nn_program *p, const train_config *c)
 {
     nn_set_loss_weight(p, "albedo", (float)c->albedo_weight);
     nn_set_loss_weight(p, "depth", (float)c->depth_weight);
+    nn_set_loss_weight(p, "lamp", (float)c->lamp_weight);
     nn_set_loss_weight(p, "relight_brdf", (float)c->relight_brdf_weight);
     nn_set_loss_weight(p, "relight_ssim", (float)c->ssim_weight);
     nn_set_loss_weight(p, "relight_brdf_ssim", (float)c->ssim_weight);

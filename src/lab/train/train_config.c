@@ -43,8 +43,10 @@ static const optional optionals[] = {
     {"relight_brdf_weight", 1e4, offsetof(train_config, relight_brdf_weight), 0},
     {"ssim_weight", 1e4, offsetof(train_config, ssim_weight), 0},
     {"dark_target", 1, offsetof(train_config, dark_target), 0},
+    {"fewest_pictures", 64, offsetof(train_config, fewest_pictures), 1},
     {"most_pictures", 64, offsetof(train_config, most_pictures), 1},
     {"single_rate_scale", 10, offsetof(train_config, single_rate_scale), 1},
+    {"lamp_weight", 1e4, offsetof(train_config, lamp_weight), 0.25},
     {"weight_decay", 1, offsetof(train_config, weight_decay), 0},
     {"average_decay", 0.999999, offsetof(train_config, average_decay), 0},
 };
@@ -63,8 +65,12 @@ static status read_optionals(json_object *o, train_config *c)
 
 static status check_pictures(const char *where, const train_config *c)
 {
-    if (c->most_pictures >= 1 && c->most_pictures == (int)c->most_pictures) return OK;
-    return fail(MERLIN_BAD_INPUT, "%s: \"most_pictures\" must be a whole number of at least 1", where);
+    const double few = c->fewest_pictures, most = c->most_pictures;
+    if (few != (int)few || most != (int)most || few < 1)
+        return fail(MERLIN_BAD_INPUT, "%s: \"fewest_pictures\" and \"most_pictures\" must be whole numbers from 1 on",
+                    where);
+    if (few <= most) return OK;
+    return fail(MERLIN_BAD_INPUT, "%s: \"fewest_pictures\" must not be more than \"most_pictures\"", where);
 }
 
 /* Writes the optional keys that differ from their defaults, each after a comma and a space. */

@@ -31,13 +31,14 @@ typedef struct train_config {
     double albedo_weight;       /* of the albedo loss; by default 1, as in the paper */
     double relight_brdf_weight; /* of a loss for relighting by the maps' BRDF besides the network's; 0: none, as in the
                                  * paper */
-    double ssim_weight;   /* of the structural dissimilarity of relit images, by network and by BRDF; 0: none, as in the
-                           * paper (docs/notes/similarity_in_training.md) */
-    double dark_target;   /* setting B: share of targets without an environment */
-    double most_pictures; /* of an object at once; each step has a number of them that divides a rank's batch. 1 unless
-                           * the model takes several */
+    double ssim_weight; /* of the structural dissimilarity of relit images, by network and by BRDF; 0: none, as in the
+                         * paper (docs/notes/similarity_in_training.md) */
+    double dark_target; /* setting B: share of targets without an environment */
+    double fewest_pictures, most_pictures; /* of an object at once; each step has a number of them that divides a rank's
+                                            * batch. 1 unless the model takes several */
     double single_rate_scale; /* ratio of the rate of parameters that the model of one photograph has, too, to that of
                                * those which only a model of several has; 1 by default */
+    double lamp_weight;       /* of the loss for the strongest lamp's direction; 0.25 by default */
     double weight_decay;      /* of convolutions and fully connected layers, decoupled (nn_adam_options) */
     double average_decay;     /* of the weights' mean (train/average.h), which is validated and exported; 0: the last
                                * weights are */

@@ -19,12 +19,16 @@ status train_programs_new(const nn_graph *g, nn_params *params, const nn_options
     nn_options its = *options;
     train_source from = *source;
     status s = OK;
-    for (int pictures = 1; s == OK && pictures <= most && out->count < TRAIN_PROGRAMS; pictures++) {
+    const int fewest = source->config->fewest_pictures > 1 ? (int)source->config->fewest_pictures : 1;
+    for (int pictures = fewest; s == OK && pictures <= most && out->count < TRAIN_PROGRAMS; pictures++) {
         if (options->batch % pictures || (pictures > 1 && options->batch / pictures < 2)) continue;
         its.group = from.pictures = pictures;
         its.beside = out->count ? out->at[0].program : NULL; /* the first has most objects, and most maps */
         s = add(g, params, &its, &from, out);
     }
+    if (s == OK && out->count == 0)
+        s = fail(MERLIN_BAD_INPUT, "no number of pictures from %d to %d divides a batch of %d into two objects or more",
+                 fewest, most, options->batch);
     if (s != OK) train_programs_free(out);
     return s;
 }
