@@ -22,13 +22,17 @@ Points = Iterable[Tuple[int, int]]
 Box = Tuple[int, int, int, int]
 
 
-def _default_weights() -> Tuple[bytes, Optional[bytes]]:
-    """As the command's: $MERLIN_MODEL, else merlin-any and, for flashes, merlin-point."""
+def _shipped(name: str) -> Optional[bytes]:
+    path = shipped_weights(name)
+    return None if path is None else os.fsencode(path)
+
+
+def _default_weights() -> Tuple[bytes, Optional[bytes], Optional[bytes]]:
+    """As the command's: $MERLIN_MODEL, else merlin-any and, for flashes, merlin-point; lights by merlin-lights."""
     named = os.environ.get("MERLIN_MODEL")
     if named:
-        return weights_path(named, "MERLIN_MODEL: "), None
-    flash = shipped_weights("merlin-point")
-    return weights_path("merlin-any"), None if flash is None else os.fsencode(flash)
+        return weights_path(named, "MERLIN_MODEL: "), None, None
+    return weights_path("merlin-any"), _shipped("merlin-point"), _shipped("merlin-lights")
 
 
 def hint_of(points: Optional[Points], box: Optional[Box]) -> Any:
@@ -129,18 +133,24 @@ class Model:
     """Trained weights, opened to work with. Several threads may use one model (they take turns), or each its own.
 
     weights: "merlin-any" (any light), "merlin-point" (a flash alone), "merlin-env" (a flash in a room), or a file.
-    flash: weights of the same kinds for photographs that those of any light see lit by a flash alone. Without either:
-    $MERLIN_MODEL, else merlin-any with merlin-point for flashes, as the command has it."""
+    flash: weights of the same kinds for photographs that those of any light see lit by a flash alone; lights:
+    "merlin-lights" or a file, which tells the lights of several photographs of an object together (`Capture.maps`).
+    Without any of them: $MERLIN_MODEL, else merlin-any with merlin-point and merlin-lights, as the command has it."""
 
-    def __init__(self, weights: Optional[PathLike] = None, *, flash: Optional[PathLike] = None) -> None:
-        main, other = _default_weights() if weights is None else (weights_path(weights), None)
+    def __init__(self, weights: Optional[PathLike] = None, *, flash: Optional[PathLike] = None,
+                 lights: Optional[PathLike] = None) -> None:
+        main, other, together = _default_weights() if weights is None else (weights_path(weights), None, None)
         if flash is not None:
             other = weights_path(flash)
+        if lights is not None:
+            together = weights_path(lights)
         self._owner: Optional[Owner] = Owner(ctypes.c_void_p(), "model_close")
         self._ready: Any = None
         check("model_open", main, self._owner.at, path=os.fsdecode(main))
         if other is not None:
             check("model_add_flash", self._handle.struct, other)
+        if together is not None:
+            check("model_add_lights", self._handle.struct, together)
 
     @property
     def _handle(self) -> Owner:

@@ -358,6 +358,12 @@ status photo_find_models_of(const merlin_maps *maps, const char *asked, char **p
     return s == OK && !*path ? photo_find_models(asked, path, flash) : s;
 }
 
+status photo_find_lights(const char *asked, char **path)
+{
+    *path = NULL;
+    return asked ? photo_find_model(asked, path) : find_shipped("merlin-lights", path);
+}
+
 status photo_open_models(const char *path, const char *flash, merlin_model **out)
 {
     status s = merlin_model_open(path, out);

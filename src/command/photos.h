@@ -54,6 +54,10 @@ status photo_find_models(const char *asked, char **path, char **flash);
  * ship. */
 status photo_find_models_of(const merlin_maps *maps, const char *asked, char **path, char **flash);
 
+/* Finds weights that tell the lights of several photographs, by a name or a path; asked NULL: merlin-lights, where it
+ * is there, else *path is NULL. malloc'ed. */
+status photo_find_lights(const char *asked, char **path);
+
 /* Opens the result of photo_find_models; flash may be NULL. */
 status photo_open_models(const char *path, const char *flash, merlin_model **out);
 

@@ -143,6 +143,33 @@ static void what_it_cannot_take_is_refused(void **state)
     assert_null(e.maps.albedo.data);
 }
 
+/* The network of lights alone has the encoder of the whole one, and tells the same of pictures of its own size. */
+static void lights_alone_are_those_of_the_whole_network(void **state)
+{
+    const fixture *f = *state;
+    network_estimation whole;
+    network *alone;
+    float lights[2][PICTURES][MODEL_LIGHTS];
+    const char *weights = scratch_path("lights.safetensors");
+    assert_int_equal(write_shared_weights_of("merlin-lights", scratch_path("several.safetensors"), weights), OK);
+    assert_int_equal(network_open(weights, &alone), MERLIN_BAD_INPUT);
+    assert_non_null(strstr(status_message(), "tells only the lights"));
+    assert_int_equal(network_open_lights(scratch_path("any.safetensors"), &alone), MERLIN_WRONG_USE);
+    assert_int_equal(network_open_lights(weights, &alone), OK);
+    network_compute_in(alone, NN_FLOAT32);
+    assert_int_equal(network_lights_several(alone, f->photo, PICTURES, &f->mask, &how, VIEWS, NULL, lights[0]), OK);
+    assert_int_equal(
+        network_estimate_several(f->network, f->photo, PICTURES, &f->mask, &how, VIEWS, NULL, lights[1], &whole), OK);
+    for (int k = 0; k < PICTURES; k++)
+        for (int i = 0; i < MODEL_LIGHTS; i++)
+            assert_float_equal(lights[0][k][i], lights[1][k][i], 1e-5f);
+    assert_int_equal(network_lights_several(f->single, f->photo, 2, &f->mask, &how, 1, NULL, lights[0]),
+                     MERLIN_WRONG_USE);
+    assert_int_equal(network_lights_several(alone, f->photo, 0, &f->mask, &how, 1, NULL, lights[0]), MERLIN_WRONG_USE);
+    network_estimation_free(&whole);
+    network_close(alone);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -150,6 +177,7 @@ int main(void)
         cmocka_unit_test(the_order_of_photographs_changes_only_the_lights),
         cmocka_unit_test(a_network_of_one_photograph_gives_the_mean),
         cmocka_unit_test(what_it_cannot_take_is_refused),
+        cmocka_unit_test(lights_alone_are_those_of_the_whole_network),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -189,6 +189,15 @@ static status make_input(work *w, merlin_maps *maps)
     return make_all_further(w);
 }
 
+/* Estimates the lights of several photographs by a network that compares them. */
+static status find_lights(network *n, work *w)
+{
+    const merlin_params *p = w->params;
+    if (!n || !w->low_photos || !w->further.lights) return OK;
+    return network_lights_several(n, w->low_photos, 1 + w->further.count, &w->low_mask, &w->how, p->views, p->stop,
+                                  w->further.lights);
+}
+
 static status run_network(network *n, work *w)
 {
     const merlin_params *p = w->params;
@@ -366,6 +375,7 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     if (w->params->last) model_keep(model, n);
     if (s == OK) s = prepare(model, n, w, maps);
     if (s == OK) s = run_network(n, w);
+    if (s == OK) s = find_lights(model->lights, w);
     if (s == OK) s = lap(w, &t->network);
     if (s == OK) s = prepare_bounces(model, n, w, maps);
     maps->has_environment = network_config(n)->lighting == MODEL_LIGHT_BOTH;

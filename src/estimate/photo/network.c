@@ -42,7 +42,7 @@ static status load_params(network *n)
     return s;
 }
 
-status network_open_later(const char *weights, network **out)
+static status open_later(const char *weights, network **out)
 {
     *out = NULL;
     network *n = calloc(1, sizeof *n);
@@ -61,14 +61,37 @@ status network_open_later(const char *weights, network **out)
     return s;
 }
 
+/* Closes a network that is of no use. */
+static status keep_if(status s, network **n)
+{
+    if (s == OK) return OK;
+    network_close(*n);
+    *n = NULL;
+    return s;
+}
+
+status network_open_later(const char *weights, network **out)
+{
+    status s = open_later(weights, out);
+    if (s == OK && (*out)->config.only_lights)
+        s = fail(MERLIN_BAD_INPUT, "%s: model \"%s\" tells only the lights of several photographs, and makes no maps",
+                 weights, (*out)->config.name);
+    return keep_if(s, out);
+}
+
 status network_open(const char *weights, network **out)
 {
     status s = network_open_later(weights, out);
     if (s == OK) s = load_params(*out);
-    if (s == OK) return OK;
-    network_close(*out);
-    *out = NULL;
-    return s;
+    return keep_if(s, out);
+}
+
+status network_open_lights(const char *weights, network **out)
+{
+    status s = open_later(weights, out);
+    if (s == OK && !(*out)->config.several)
+        s = fail(MERLIN_WRONG_USE, "%s: model \"%s\" sees one photograph at a time", weights, (*out)->config.name);
+    return keep_if(s, out);
 }
 
 static void compiled_free(compiled *c)

@@ -19,6 +19,9 @@
  * pictures they estimate fine shape well, and coarse shape badly (detail.h). */
 enum { NETWORK_LEAST_SIZE = 64, NETWORK_SIZE = 256, NETWORK_LARGEST_SIZE = 512 };
 
+/* Size at which the lights of several photographs are seen, that of their training: light is coarse. */
+enum { NETWORK_LIGHTS_SIZE = 96 };
+
 /* Default number of orientations in which a photograph is estimated: compared with one, four take 55 ms more than an
  * estimate's 145, and have five to ten per cent less error (docs/notes/several_views.md). */
 enum { NETWORK_VIEWS = 4 };
@@ -31,11 +34,14 @@ static inline int network_side(int size)
 
 typedef struct network network;
 
-/* Opens a weights file; MERLIN_BAD_INPUT if it is not one of merlin. The network computes in nn_fastest_type. */
+/* Opens a weights file; MERLIN_BAD_INPUT if it is not one of merlin, or only tells lights. The network computes in
+ * nn_fastest_type. */
 status network_open(const char *weights, network **out);
 /* Opens a weights file but reads only its configuration; the parameters, most of the file, are read when a program is
  * first compiled. */
 status network_open_later(const char *weights, network **out);
+/* Does the same for network_lights_several. MERLIN_WRONG_USE for a model of one photograph. */
+status network_open_lights(const char *weights, network **out);
 /* Changes the number type of further computations, so that both types' results can be compared. */
 void network_compute_in(network *n, nn_type type);
 void network_close(network *n);
@@ -73,6 +79,10 @@ status network_lights(network *n, const img *photo, const img *mask, const sight
  * each. MERLIN_WRONG_USE for a model of flashes. */
 status network_estimate_several(network *n, const img *photos, int count, const img *mask, const sight *how, int views,
                                 int (*stop)(void), float (*lights)[MODEL_LIGHTS], network_estimation *out);
+/* Estimates only the lights of several photographs, seen together; photos as for network_estimate_several.
+ * MERLIN_WRONG_USE unless the model sees several. */
+status network_lights_several(network *n, const img *photos, int count, const img *mask, const sight *how, int views,
+                              int (*stop)(void), float (*lights)[MODEL_LIGHTS]);
 void network_estimation_free(network_estimation *e);
 /* Estimates only the normals, as network_estimate does, for the detail of a larger picture. */
 status network_normals(network *n, const img *photo, const img *mask, const sight *how, int views, int (*stop)(void),

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/progress.h"
+#include "estimate/photo/input.h"
 #include "estimate/photo/network.h"
 #include "estimate/photo/network_parts.h"
 #include "estimate/photo/view.h"
@@ -14,13 +15,15 @@ typedef struct pictures {
     const sight *how;
 } pictures;
 
+static const char *const light_outputs[] = {"lights", NULL};
+
 /* Runs the network on all photographs in one orientation. */
-static status run_view(network *n, const pictures *of, int view)
+static status run_view(network *n, const pictures *of, int view, const char *const *outputs, compiled *c)
 {
     const int size = of->mask->width;
-    status s = network_compile_several(n, view_outputs, size, of->count, &n->maps);
+    status s = network_compile_several(n, outputs, size, of->count, c);
     if (s != OK) return s;
-    nn_program *p = n->maps.program;
+    nn_program *p = c->program;
     for (int i = 0; i < of->count; i++) {
         view_put_photo(p, (size_t)i, view, &of->photos[i]);
         view_put_known(p, (size_t)i, view, of->how, size);
@@ -37,7 +40,7 @@ static status add_view(network *n, const pictures *of, int view, float weight, f
                        network_estimation *mean)
 {
     network_estimation turned = {0};
-    status s = run_view(n, of, view);
+    status s = run_view(n, of, view, view_outputs, &n->maps);
     if (s == OK) s = network_take_estimation(n->maps.program, of->mask->width, &turned);
     if (s == OK) view_mean_add(mean, &turned, view, weight);
     for (int i = 0; s == OK && lights && i < of->count; i++)
@@ -83,6 +86,12 @@ static status see_together(network *n, const pictures *of, int views, int (*stop
     return s;
 }
 
+static status check_count(int count)
+{
+    if (count >= 1 && count <= NN_LARGEST_GROUP) return OK;
+    return fail(MERLIN_WRONG_USE, "%d photographs of an object: 1 to %d", count, NN_LARGEST_GROUP);
+}
+
 status network_estimate_several(network *n, const img *photos, int count, const img *mask, const sight *how, int views,
                                 int (*stop)(void), float (*lights)[MODEL_LIGHTS], network_estimation *out)
 {
@@ -92,13 +101,56 @@ status network_estimate_several(network *n, const img *photos, int count, const 
     if (s == OK && n->config.lighting != MODEL_LIGHT_ANY)
         s = fail(MERLIN_WRONG_USE, "model \"%s\" is for flashes: several photographs have other lights",
                  n->config.name);
-    if (s == OK && (count < 1 || count > NN_LARGEST_GROUP))
-        s = fail(MERLIN_WRONG_USE, "%d photographs of an object: 1 to %d", count, NN_LARGEST_GROUP);
+    if (s == OK) s = check_count(count);
     if (s == OK) s = (n->config.several ? see_together : see_each)(n, &of, views, stop, lights, out);
     out->maps.lens = how ? how->lens : (camera_lens){.fov = 0};
     img_free(&out->maps.mask);
     if (s == OK) s = img_copy(&out->maps.mask, mask);
     if (s == OK) s = network_finish(n, &out->maps);
     if (s != OK) network_estimation_free(out);
+    return s;
+}
+
+/* Shrinks photographs to the size at which lights are seen, unless they are smaller. */
+static status shrink(const pictures *of, img *photos, img *mask)
+{
+    const int side = of->mask->width < NETWORK_LIGHTS_SIZE ? of->mask->width : NETWORK_LIGHTS_SIZE;
+    status s = OK;
+    for (int i = 0; i < of->count && s == OK; i++) {
+        img_free(mask);
+        s = input_make(&of->photos[i], of->mask, side, &photos[i], mask);
+    }
+    return s;
+}
+
+/* Sees the lights of all photographs together. */
+static status see_lights(network *n, const pictures *of, int views, int (*stop)(void), float (*lights)[MODEL_LIGHTS])
+{
+    status s = OK;
+    memset(lights, 0, (size_t)of->count * sizeof *lights);
+    for (int view = 0; view < views && s == OK; view++) {
+        s = stop && stop() ? fail(MERLIN_STOPPED, "stopped") : run_view(n, of, view, light_outputs, &n->lights);
+        for (int i = 0; s == OK && i < of->count; i++)
+            view_add_lights(lights[i], nn_output_data(n->lights.program, "lights") + MODEL_LIGHTS * i, view,
+                            1.0f / (float)views);
+    }
+    return s;
+}
+
+status network_lights_several(network *n, const img *photos, int count, const img *mask, const sight *how, int views,
+                              int (*stop)(void), float (*lights)[MODEL_LIGHTS])
+{
+    img small[NN_LARGEST_GROUP] = {0}, small_mask = {0};
+    status s = network_check_views(views);
+    if (s == OK && !n->config.several)
+        s = fail(MERLIN_WRONG_USE, "model \"%s\" sees one photograph at a time", n->config.name);
+    if (s == OK) s = check_count(count);
+    if (s == OK) s = shrink(&(pictures){photos, mask, count, how}, small, &small_mask);
+    pthread_mutex_lock(&n->lock);
+    if (s == OK) s = see_lights(n, &(pictures){small, &small_mask, count, how}, views, stop, lights);
+    pthread_mutex_unlock(&n->lock);
+    for (int i = 0; i < NN_LARGEST_GROUP; i++)
+        img_free(&small[i]);
+    img_free(&small_mask);
     return s;
 }

@@ -126,7 +126,11 @@ static status measure_all(run *r, char **path, unknown_table *out)
     out->object = calloc(out->count, sizeof *out->object);
     if (!out->object) return fail(MERLIN_NO_MEMORY, "no memory for a table of %zu objects", out->count);
     status s = merlin_model_open(r->options->weights, &r->model);
-    if (s != OK) return s;
+    if (s == OK && r->options->lights) s = merlin_model_add_lights(r->model, r->options->lights);
+    if (s != OK) {
+        merlin_model_close(r->model);
+        return s;
+    }
     snprintf(out->model, sizeof out->model, "%s", merlin_model_name(r->model));
     const size_t solutions = (size_t)UNKNOWN_ROWS * UNKNOWN_WAYS;
     progress_begin(&r->bar, "unknown lights", "solutions", 0, out->count * solutions, r->options->quiet);

@@ -53,14 +53,28 @@ static status photograph(const lit_subject *on, int number, photographs *out)
     return OK;
 }
 
+/* Returns the angle between a lamp's direction and the one that a network sees, degrees; 90 if it sees none. */
+static double lamp_error(const sample_lamp *truth, const float *lights)
+{
+    const vec3 way = truth->distant ? truth->at : vec3_sub(truth->at, vec3_make(0, 0, -1));
+    const vec3 seen = vec3_normalize(vec3_of(lights + MODEL_LIGHTS_LAMP));
+    return acos((double)clamp(vec3_dot(vec3_normalize(way), seen), -1, 1)) / DEGREE;
+}
+
 static status measure(const run *r, const lit_subject *on, const photographs *p, int row)
 {
     const int count = 1 << row;
+    const several_options *o = r->options;
     network_estimation found = {0};
-    status s = network_estimate_several(r->network, p->photo, count, &p->mask, &p->how, r->options->views,
-                                        r->options->stopped, NULL, &found);
+    float lights[MOST][MODEL_LIGHTS];
+    status s = r->table->only_lights ? network_lights_several(r->network, p->photo, count, &p->mask, &p->how, o->views,
+                                                              o->stopped, lights)
+                                     : network_estimate_several(r->network, p->photo, count, &p->mask, &p->how,
+                                                                o->views, o->stopped, lights, &found);
     if (s == OK) {
-        lit_figures_add(&found.maps, on, r->table->mean[row]);
+        if (found.maps.normal.data) lit_figures_add(&found.maps, on, r->table->mean[row]);
+        for (int i = 0; i < count; i++)
+            r->table->lamp[row] += lamp_error(&on->s->lamps[i], lights[i]) / count;
         r->table->count[row]++;
     }
     network_estimation_free(&found);
@@ -93,6 +107,8 @@ static status measure_file(void *context, const char *path)
 static void finish(several_table *t)
 {
     for (int row = 0; row < SEVERAL_ROWS; row++)
+        t->lamp[row] = t->count[row] ? t->lamp[row] / (double)t->count[row] : (double)NAN;
+    for (int row = 0; row < SEVERAL_ROWS; row++)
         for (int f = 0; f < LIT_FIGURES; f++)
             t->mean[row][f] = t->count[row] ? t->mean[row][f] / (double)t->count[row] : (double)NAN;
 }
@@ -103,11 +119,14 @@ status several_table_run(const several_options *options, several_table *out)
     const double began = clock_seconds();
     const eval_samples all = {options->data, "evaluating", options->count, options->quiet, options->stopped};
     run r = {.options = options, .table = out};
-    status s = network_open(options->weights, &r.network);
+    model_config config;
+    status s = model_load_config(options->weights, &config);
+    if (s == OK) s = (config.only_lights ? network_open_lights : network_open)(options->weights, &r.network);
     if (s != OK) return s;
     const model_config *c = network_config(r.network);
     snprintf(out->model, sizeof out->model, "%s", c->name);
     out->together = c->several;
+    out->only_lights = c->only_lights;
     if (c->lighting == MODEL_LIGHT_ANY)
         s = eval_each_sample(&all, measure_file, &r);
     else
@@ -127,12 +146,14 @@ void several_table_print(const several_table *t, FILE *stream)
     fprintf(stream, "%s%s on %zu samples; errors in 1e-2, relief in hundredths of the frame's width\n\n%-*s%*s",
             t->model, t->together ? "" : ", the mean of its estimates,", t->samples, CELL, "photographs", CELL,
             "samples");
-    for (int f = 0; f < LIT_FIGURES; f++)
+    for (int f = 0; f < LIT_FIGURES && !t->only_lights; f++)
         fprintf(stream, "%*s", CELL, lit_figure_words[f].heading);
+    fprintf(stream, "%*s", CELL, "lamps, degrees");
     for (int row = 0; row < SEVERAL_ROWS && t->count[row] > 0; row++) {
         fprintf(stream, "\n%-*d%*zu", CELL, 1 << row, CELL, t->count[row]);
-        for (int f = 0; f < LIT_FIGURES; f++)
+        for (int f = 0; f < LIT_FIGURES && !t->only_lights; f++)
             fprintf(stream, "%*.2f", CELL, lit_figure_words[f].factor * t->mean[row][f]);
+        fprintf(stream, "%*.1f", CELL, t->lamp[row]);
     }
     fprintf(stream, "\n\n%.1f s\n", t->seconds);
 }
@@ -149,8 +170,9 @@ char *several_table_json(const several_table *t)
         snprintf(name, sizeof name, "%d", 1 << row);
         cJSON *o = json_put_object(rows, name);
         json_put_number(o, "samples", (double)t->count[row]);
-        for (int f = 0; f < LIT_FIGURES; f++)
+        for (int f = 0; f < LIT_FIGURES && !t->only_lights; f++)
             json_put_number(o, lit_figure_words[f].key, t->mean[row][f]);
+        json_put_number(o, "lamp_degrees", t->lamp[row]);
     }
     char *text = json_print_line(root);
     cJSON_Delete(root);

@@ -20,10 +20,12 @@ enum { SEVERAL_ROWS = 5 };
 
 typedef struct several_table {
     char model[64];
-    bool together; /* the network sees all photographs at once */
+    bool together;    /* the network sees all photographs at once */
+    bool only_lights; /* it makes no maps: figures of maps are 0 */
     size_t samples;
     size_t count[SEVERAL_ROWS];
     double mean[SEVERAL_ROWS][LIT_FIGURES];
+    double lamp[SEVERAL_ROWS]; /* mean error of the lamps' directions from the middle of the object, degrees */
     double seconds;
 } several_table;
 
