@@ -23,7 +23,8 @@ static const double usual_mean = 0.2, whole = 0.9;
 typedef struct seen {
     const merlin_capture *capture;
     int count, number[SEEN];
-    float lights[SEEN][MODEL_LIGHTS]; /* of each, as the network predicts them */
+    float lights[SEEN][MODEL_LIGHTS];   /* of each, as the network sees them one by one */
+    float compared[SEEN][MODEL_LIGHTS]; /* the same by a network that compares the pictures, if there is one */
 } seen;
 
 static seen choose(const merlin_capture *c)
@@ -130,7 +131,8 @@ static float field_of_view(const merlin_capture *c)
 static status estimate(merlin_model *model, seen *s, const merlin_params *params, merlin_maps *maps)
 {
     merlin_params p = *params;
-    const estimate_further further = {.count = s->count - 1, .take = take_further, .context = s, .lights = s->lights};
+    const estimate_further further = {
+        .count = s->count - 1, .take = take_further, .context = s, .lights = s->lights, .compared = s->compared};
     img first = {0};
     merlin_object object = {0};
     while (p.views > 1 && p.views * s->count > RUNS)
@@ -153,14 +155,23 @@ static void doubt_several(const seen *s, merlin_maps *maps)
     maps->doubts |= MERLIN_DOUBT_NOT_REFINED;
 }
 
-static status refine(const seen *s, const merlin_params *params, merlin_maps *maps)
+static status refine(const merlin_model *model, const seen *s, const merlin_params *params, merlin_maps *maps)
 {
-    vec3 *light = calloc((size_t)s->capture->count, sizeof *light);
-    if (!light) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", s->capture->count);
-    for (int i = 0; i < s->count; i++)
+    const size_t count = (size_t)s->capture->count;
+    vec3 *light = calloc(2 * count, sizeof *light), *compared = light + count;
+    float *near = calloc(count, sizeof *near);
+    status st = light && near ? OK : fail(MERLIN_NO_MEMORY, "no memory for %zu lights", count);
+    for (int i = 0; i < s->count && st == OK; i++) {
         light[s->number[i]] = vec3_of(s->lights[i] + MODEL_LIGHTS_LAMP);
-    status st = prior_stereo_refine(s->capture, light, params->stop, maps);
+        compared[s->number[i]] = vec3_of(s->compared[i] + MODEL_LIGHTS_LAMP);
+        near[s->number[i]] = s->compared[i][MODEL_LIGHTS_DISTANCE];
+    }
+    /* a start from lights of which some are unknown would be a wrong one */
+    const bool all_compared = model->lights && s->count == s->capture->count;
+    const prior_lights lights = {light, all_compared ? compared : NULL, near};
+    if (st == OK) st = prior_stereo_refine(s->capture, &lights, params->stop, maps);
     free(light);
+    free(near);
     return st;
 }
 
@@ -182,7 +193,7 @@ status maps_of_capture(merlin_model *model, const merlin_capture *capture, const
     seen pictures = choose(capture);
     s = estimate(model, &pictures, params, maps);
     if (s == OK) doubt_several(&pictures, maps);
-    if (s == OK && refined) s = refine(&pictures, params, maps);
+    if (s == OK && refined) s = refine(model, &pictures, params, maps);
     if (s != OK) merlin_maps_free(maps);
     return s;
 }

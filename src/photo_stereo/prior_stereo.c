@@ -10,9 +10,8 @@
 #include "stereo/integrate/integrate.h"
 #include "stereo/methods/solve.h"
 
-/* Number of pictures from which near lights are found so exactly that the network's normals have no share in the result
- * (docs/notes/several_photographs.md). */
-enum { MANY_NEAR = 12 };
+/* Least number of pictures whose lights a network has compared. */
+enum { FEWEST = 2 };
 
 /* Converts a vector from the lens's space (merlin_maps_lens_place) back to the maps', in which the lens's axes are the
  * rows of the rotation. */
@@ -57,16 +56,12 @@ static status refit_depth(merlin_maps *maps)
     return s;
 }
 
-/* Takes the solved normals; with few pictures under near lights their mean with the network's, as both have errors then
- * and other ones. */
-static status take(const merlin_surface *found, bool alone, merlin_maps *maps)
+static status take(const merlin_surface *found, merlin_maps *maps)
 {
     for (size_t i = 0; i < img_value_count(&maps->mask); i++) {
         if (!(maps->mask.data[i] >= 0.5f)) continue;
-        float *normal = maps->normal.data + 3 * i;
-        vec3 n = from_lens(maps, vec3_of(found->normal.data + 3 * i));
-        if (!alone) n = vec3_normalize(vec3_add(n, vec3_of(normal)));
-        if (vec3_dot(n, n) > 0) vec3_put(n, normal);
+        const vec3 n = from_lens(maps, vec3_of(found->normal.data + 3 * i));
+        if (vec3_dot(n, n) > 0) vec3_put(n, maps->normal.data + 3 * i);
     }
     img_free(&maps->reconstruction);
     maps->refined = 1;
@@ -77,18 +72,30 @@ static status take(const merlin_surface *found, bool alone, merlin_maps *maps)
 /* Surface and lights that are expected, in the space of the capture's camera. */
 typedef struct expectation {
     img mask, normal;
-    vec3 *light;
+    const img *depth;
+    vec3 *light, *compared; /* compared: NULL if nobody compared them */
+    const float *near;
 } expectation;
 
-static status expect(const merlin_maps *maps, const vec3 *light, int count, expectation *out)
+static void turn(const merlin_maps *maps, const vec3 *from, int count, vec3 *to)
 {
-    *out = (expectation){.light = malloc((size_t)count * sizeof *light)};
-    if (!out->light) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", count);
     for (int i = 0; i < count; i++) {
-        float to[3];
-        vec3_put(light[i], to);
-        merlin_maps_lens_place(maps, to, to);
-        out->light[i] = vec3_of(to);
+        float way[3];
+        vec3_put(from[i], way);
+        merlin_maps_lens_place(maps, way, way);
+        to[i] = vec3_of(way);
+    }
+}
+
+static status expect(const merlin_maps *maps, const prior_lights *lights, int count, expectation *out)
+{
+    *out = (expectation){.depth = &maps->depth, .near = lights->near};
+    out->light = malloc(2 * (size_t)count * sizeof *out->light);
+    if (!out->light) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", count);
+    turn(maps, lights->light, count, out->light);
+    if (lights->compared) {
+        out->compared = out->light + count;
+        turn(maps, lights->compared, count, out->compared);
     }
     status s = img_copy(&out->mask, &maps->mask);
     if (s == OK) s = img_copy(&out->normal, &maps->normal);
@@ -111,7 +118,7 @@ static void expectation_free(expectation *e)
 static status solve(const merlin_capture *capture, const expectation *e, int (*stop)(void), merlin_surface *out)
 {
     merlin_capture c = *capture;
-    const pst_expected expected = {&e->normal, e->light};
+    const pst_expected expected = {&e->normal, e->depth, e->light, e->compared, e->near};
     c.lighting = MERLIN_UNKNOWN_LIGHTS;
     c.mask = e->mask;
     return pst_solve_expecting(
@@ -119,15 +126,15 @@ static status solve(const merlin_capture *capture, const expectation *e, int (*s
         out);
 }
 
-status prior_stereo_refine(const merlin_capture *capture, const vec3 *light, int (*stop)(void), merlin_maps *maps)
+status prior_stereo_refine(const merlin_capture *capture, const prior_lights *lights, int (*stop)(void),
+                           merlin_maps *maps)
 {
-    if (capture->count < PST_FEWEST_UNKNOWN) return OK;
+    if (capture->count < (lights->compared ? FEWEST : PST_FEWEST_UNKNOWN)) return OK;
     expectation e;
     merlin_surface found = {0};
-    status s = expect(maps, light, capture->count, &e);
+    status s = expect(maps, lights, capture->count, &e);
     if (s == OK) s = solve(capture, &e, stop, &found);
-    const bool alone = !found.lights_near || capture->count >= MANY_NEAR;
-    if (s == OK && !found.lights_unsure) s = take(&found, alone, maps);
+    if (s == OK && !found.lights_unsure) s = take(&found, maps);
     merlin_surface_free(&found);
     expectation_free(&e);
     return s == MERLIN_BAD_INPUT ? OK : s; /* the pictures do not tell where the lights are */

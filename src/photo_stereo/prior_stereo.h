@@ -10,8 +10,15 @@
 #include "base/vec.h"
 #include "merlin/surface.h"
 
+/* The pictures' lights as they are expected, in the maps' space: pst_expected's. */
+typedef struct prior_lights {
+    const vec3 *light, *compared;
+    const float *near;
+} prior_lights;
+
 /* Replaces the maps' normals, and the depth that agrees with them, by those of photometric stereo, if that explains the
- * pictures by a similar surface; else leaves the maps as they are. light: as pst_expected's, in the maps' space. */
-status prior_stereo_refine(const merlin_capture *capture, const vec3 *light, int (*stop)(void), merlin_maps *maps);
+ * pictures by a similar surface; else leaves the maps as they are. */
+status prior_stereo_refine(const merlin_capture *capture, const prior_lights *lights, int (*stop)(void),
+                           merlin_maps *maps);
 
 #endif

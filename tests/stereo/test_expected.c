@@ -3,6 +3,8 @@
 #include "base/rng.h"
 #include "solve_fixture.h"
 
+#include "ball.h"
+
 enum { SIZE = 64, LIGHTS = 12 };
 static const relief painted = {.size = SIZE, .lights = LIGHTS, .channels = 3, .exposure = 1.5f};
 
@@ -41,7 +43,7 @@ static double solve_expecting(const merlin_capture *c, const expectation *e, boo
 {
     merlin_surface s;
     const merlin_stereo_params params = {.method = MERLIN_STEREO_UNCALIBRATED, .unchecked = 1};
-    if (pst_solve_expecting(c, &params, &(pst_expected){&e->normal, e->light}, &s) != OK)
+    if (pst_solve_expecting(c, &params, &(pst_expected){&e->normal, NULL, e->light, NULL, NULL}, &s) != OK)
         fail_msg("%s", status_message());
     const double angle = mean_angle(c, &s.normal);
     *unsure = s.lights_unsure;
@@ -98,11 +100,78 @@ static void lights_that_nobody_expects_are_unsure(void **state)
     capture_drop(&c);
 }
 
+/* ---- few near lights ---- */
+
+enum { FEW = 4 };
+
+static vec3 torch(int i)
+{
+    const float turn = 0.5f + 6.2831853f * (float)i / FEW, aside = 0.55f + 0.05f * (float)(i % 2);
+    return vec3_make(aside * cosf(turn), aside * sinf(turn), -0.2f);
+}
+
+/* What a network may tell of the ball: flatter by this factor, lights off by some eight degrees, distances by a tenth.
+ */
+typedef struct ball_expectation {
+    img normal, depth;
+    vec3 light[FEW];
+    float near[FEW];
+} ball_expectation;
+
+static void expect_ball(const merlin_capture *c, float flatter, ball_expectation *out)
+{
+    rng r = rng_at(12, 0, 0);
+    assert_int_equal(img_copy(&out->normal, &c->normal_true), OK);
+    assert_int_equal(img_copy(&out->depth, &c->depth_true), OK);
+    for (int i = 0; i < BALL_SIZE * BALL_SIZE; i++) {
+        float *n = out->normal.data + 3 * i;
+        if (c->mask.data[i] == 0) continue;
+        vec3_put(vec3_normalize(vec3_make(n[0] * flatter, n[1] * flatter, n[2])), n);
+        out->depth.data[i] = 1 + flatter * (out->depth.data[i] - 1);
+    }
+    for (int k = 0; k < FEW; k++) {
+        const vec3 way = vec3_sub(torch(k), vec3_make(0, 0, -1)), to = vec3_normalize(way);
+        const vec3 off = vec3_make(rng_range(&r, -0.15f, 0.15f), rng_range(&r, -0.15f, 0.15f), 0);
+        out->light[k] = vec3_scale(vec3_normalize(vec3_add(to, off)), 0.9f);
+        out->near[k] = (k % 2 ? 1.1f : 0.9f) / vec3_length(way);
+    }
+}
+
+/* A surface that is too flat, and four pictures, of which it alone explains none. */
+static void few_pictures_correct_what_is_expected(void **state)
+{
+    (void)state;
+    merlin_capture c;
+    merlin_surface s;
+    ball_expectation e;
+    const merlin_stereo_params params = {.method = MERLIN_STEREO_UNCALIBRATED, .unchecked = 1};
+    c.camera.distance = ball_capture(&c, FEW, torch, 0, 0);
+    c.lighting = MERLIN_UNKNOWN_LIGHTS;
+    expect_ball(&c, 0.6f, &e);
+    const pst_expected expected = {&e.normal, &e.depth, e.light, e.light, e.near};
+    assert_int_equal(pst_solve_expecting(&c, &params, &expected, &s), OK);
+    const double before = mean_angle(&c, &e.normal), after = mean_angle(&c, &s.normal);
+    print_message("four pictures: %.2f degrees, expected %.2f\n", after, before);
+    assert_true(before > 8 && after < 0.6 * before);
+    merlin_surface_free(&s);
+    /* without the lights' distances so few are refused, as they are without anything */
+    const pst_expected coarse = {&e.normal, NULL, e.light, NULL, NULL};
+    assert_int_equal(pst_solve_expecting(&c, &params, &coarse, &s), MERLIN_BAD_INPUT);
+    assert_int_equal(pst_solve(&c, &params, &s), MERLIN_BAD_INPUT);
+    c.count = 1;
+    assert_int_equal(pst_solve_expecting(&c, &params, &expected, &s), MERLIN_BAD_INPUT);
+    c.count = FEW;
+    img_free(&e.normal);
+    img_free(&e.depth);
+    capture_drop(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_expected_surface_decides_what_strengths_do_not),
         cmocka_unit_test(lights_that_nobody_expects_are_unsure),
+        cmocka_unit_test(few_pictures_correct_what_is_expected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,12 +8,10 @@
 
 #include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
-#include "relief.h"
+#include "ball.h"
 #include "stereo/fit/field_fit.h"
 
-/* enough pixels to be searched small */
-enum { SIZE = 128, LIGHTS = 32 };
-static const float radius = 0.3f; /* of the ball at (0, 0, -1) */
+enum { SIZE = BALL_SIZE, LIGHTS = 32 };
 
 /* Positions on two rings about the camera, one to two diameters from the ball. */
 static vec3 led_position(int i)
@@ -22,49 +20,9 @@ static vec3 led_position(int i)
     return vec3_make(ring * cosf(phi), ring * sinf(phi), i % 2 ? -0.15f : -0.4f);
 }
 
-static float led_radiance(const merlin_light *led, vec3 at, vec3 n, float specular)
+static float ball_under_leds(merlin_capture *c, float specular)
 {
-    vec3 to = vec3_sub(vec3_of(led->position), at), l = vec3_normalize(to), v = vec3_normalize(vec3_scale(at, -1));
-    float n_l = vec3_dot(n, l);
-    if (n_l <= 0) return 0;
-    float lobe = powf(fmaxf(-vec3_dot(l, vec3_of(led->direction)), 0), led->lobe);
-    float f = 0.6f / PI + (specular > 0 ? specular * brdf_specular(0.3f, n, l, v) : 0);
-    return f * n_l * lobe / vec3_dot(to, to);
-}
-
-static void ball_pixel(merlin_capture *c, int i, int j, float specular)
-{
-    vec3 ray = vec3_normalize(vec3_make(((float)i + 0.5f - c->camera.x) / c->camera.focal,
-                                        (c->camera.y - (float)j - 0.5f) / c->camera.focal, -1));
-    float along = -ray.z, inside = along * along - 1 + radius * radius;
-    if (inside < 0.12f * radius * radius) return; /* up to 70 degrees */
-    vec3 at = vec3_scale(ray, along - sqrtf(inside)), n = vec3_scale(vec3_make(at.x, at.y, at.z + 1), 1 / radius);
-    size_t pixel = (size_t)j * SIZE + (size_t)i;
-    c->mask.data[pixel] = 1;
-    c->depth_true.data[pixel] = -at.z;
-    memcpy(c->normal_true.data + 3 * pixel, &(float[3]){n.x, n.y, n.z}, 3 * sizeof(float));
-    for (int k = 0; k < LIGHTS; k++)
-        c->picture[k][pixel] = relief_code(0.6f * led_radiance(&c->light[k], at, n, specular));
-}
-
-/* Returns the ball's mean distance. */
-static float ball_capture(merlin_capture *c, float specular)
-{
-    capture_new(c, SIZE, LIGHTS, 1);
-    c->lighting = MERLIN_NEAR_LIGHTS;
-    c->camera = (pinhole){.focal = 1.5f * SIZE, .x = SIZE / 2.0f, .y = SIZE / 2.0f};
-    for (int k = 0; k < LIGHTS; k++) {
-        vec3_put(led_position(k), c->light[k].position);
-        vec3_put(vec3_normalize(vec3_sub(vec3_make(0, 0, -1), led_position(k))), c->light[k].direction);
-        c->light[k].lobe = 1.5f;
-    }
-    double sum = 0, count = 0;
-    for (int i = 0; i < SIZE * SIZE; i++) {
-        ball_pixel(c, i % SIZE, i / SIZE, specular);
-        sum += c->depth_true.data[i];
-        count += c->mask.data[i];
-    }
-    return (float)(sum / count);
+    return ball_capture(c, LIGHTS, led_position, 1.5f, specular);
 }
 
 /* Largest error of the depth against its truth, once the scale is aligned; *scale is what was left to align. */
@@ -88,7 +46,7 @@ static void check_ball(float specular, bool distance_known, double angle_bound, 
     merlin_capture c;
     merlin_surface s;
     double scale;
-    float mean = ball_capture(&c, specular);
+    float mean = ball_under_leds(&c, specular);
     if (distance_known) c.camera.distance = mean;
     assert_int_equal(pst_solve(&c, &(merlin_stereo_params){.method = MERLIN_STEREO_AUTO}, &s), OK);
     assert_int_equal(s.method, MERLIN_STEREO_NEAR);
@@ -131,7 +89,7 @@ typedef struct few_leds {
 
 static void few_capture(const few_leds *few, merlin_capture *c)
 {
-    float mean = ball_capture(c, few->specular);
+    float mean = ball_under_leds(c, few->specular);
     c->camera.distance = few->distance_off * mean;
     for (int k = 0; k < few->count; k++) {
         int from = LIGHTS / 2 * k / few->count;
@@ -198,7 +156,7 @@ static void a_lone_pixel_is_fitted_again_from_its_neighbours(void **state)
     (void)state;
     merlin_capture c;
     double cost;
-    ball_capture(&c, 0);
+    ball_under_leds(&c, 0);
     pst_problem p = {.capture = &c, .light = c.light, .saturation = PST_SATURATED};
     assert_int_equal(pst_list_pixels(&c, &p), OK);
     pst_lobe lobe = {.width = 0.04f, .shadow = PST_SHADOW_COST, .masking = 0.28f};
@@ -228,7 +186,7 @@ static void near_lights_on_a_line_are_refused(void **state)
     (void)state;
     merlin_capture c;
     merlin_surface s;
-    ball_capture(&c, 0);
+    ball_under_leds(&c, 0);
     for (int k = 0; k < LIGHTS; k++) {
         float along = 2 * (float)k / (LIGHTS - 1) - 1;
         vec3_put(vec3_make(300 * along, 200, -100 + 3 * (float)(k % 2)), c.light[k].position);
@@ -243,7 +201,7 @@ static void a_near_capture_without_focal_length_is_refused(void **state)
     (void)state;
     merlin_capture c;
     merlin_surface s;
-    ball_capture(&c, 0);
+    ball_under_leds(&c, 0);
     c.camera.focal = 0;
     assert_int_equal(pst_solve(&c, &(merlin_stereo_params){.method = MERLIN_STEREO_NEAR}, &s), MERLIN_WRONG_USE);
     assert_non_null(strstr(status_message(), "focal length"));

@@ -193,9 +193,9 @@ static status make_input(work *w, merlin_maps *maps)
 static status find_lights(network *n, work *w)
 {
     const merlin_params *p = w->params;
-    if (!n || !w->low_photos || !w->further.lights) return OK;
+    if (!n || !w->low_photos || !w->further.compared) return OK;
     return network_lights_several(n, w->low_photos, 1 + w->further.count, &w->low_mask, &w->how, p->views, p->stop,
-                                  w->further.lights);
+                                  w->further.compared);
 }
 
 static status run_network(network *n, work *w)

@@ -29,7 +29,9 @@ typedef struct estimate_further {
     int count;
     status (*take)(void *context, int number, img *out); /* makes one of them, 3 channels of the first one's size */
     void *context;
-    float (*lights)[MODEL_LIGHTS]; /* receives the lights of the first one and of these (model.h); may be NULL */
+    float (*lights)[MODEL_LIGHTS];   /* receives the lights of the first one and of these (model.h); may be NULL */
+    float (*compared)[MODEL_LIGHTS]; /* the same by the model's network that compares the photographs, if it has one;
+                                      * may be NULL */
 } estimate_further;
 
 /* Estimates as merlin_estimate does, from several photographs, of which all but the first are in memory one at a time.

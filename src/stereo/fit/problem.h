@@ -25,7 +25,12 @@ enum { PST_FEWEST_UNKNOWN = 7 };
 /* Surface and lights as they are known from elsewhere, such as a network's estimates. */
 typedef struct pst_expected {
     const img *normal; /* 3 channels, unit, or zero where there is none, of the pictures' size */
+    const img *depth;  /* 1 channel, any unit, 0 where there is none; NULL: unknown */
     const vec3 *light; /* one per picture: the direction to its light times the probability that there is one */
+    /* the same lights as they are told by who compared the pictures, which is more exact, and their inverse distances
+     * from the middle of the object, 1: as far as the camera; NULL: nobody did */
+    const vec3 *compared;
+    const float *near;
 } pst_expected;
 
 typedef struct pst_problem {

@@ -32,7 +32,8 @@ static merlin_stereo_method choose(const merlin_capture *c)
     return c->intensities_known ? MERLIN_STEREO_ROBUST : MERLIN_STEREO_SEMI;
 }
 
-static status check_method(const merlin_capture *c, merlin_stereo_method m)
+/* expecting: a surface and lights are expected from elsewhere. */
+static status check_method(const merlin_capture *c, merlin_stereo_method m, bool expecting)
 {
     bool distant = m == MERLIN_STEREO_LS || m == MERLIN_STEREO_ROBUST || m == MERLIN_STEREO_SEMI;
     if (distant && c->lighting != MERLIN_DISTANT_LIGHTS)
@@ -45,7 +46,7 @@ static status check_method(const merlin_capture *c, merlin_stereo_method m)
                         : "--method uncalibrated");
     if (m == MERLIN_STEREO_NEAR && !(c->camera.focal > 0))
         return fail(MERLIN_WRONG_USE, "method near needs the camera's focal length");
-    if (c->count < 3)
+    if (c->count < (expecting ? 2 : 3))
         return fail(MERLIN_BAD_INPUT, "photometric stereo needs pictures under 3 or more lights, not %d", c->count);
     if (c->count > PST_MAX_LIGHTS && m != MERLIN_STEREO_LS)
         return fail(MERLIN_BAD_INPUT, "%d pictures are more than the %d that method %s solves%s", c->count,
@@ -192,7 +193,7 @@ status pst_solve_expecting(const merlin_capture *c, const merlin_stereo_params *
     const watch shown = {params->progress, params->progress_context, params->stop};
     *out = (merlin_surface){.method = params->method == MERLIN_STEREO_AUTO ? choose(c) : params->method,
                             .camera = c->camera};
-    status s = check_method(c, out->method);
+    status s = check_method(c, out->method, expected != NULL);
     if (s != OK) return s;
     merlin_light *light = calloc((size_t)c->count, sizeof *light);
     if (!light) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", c->count);

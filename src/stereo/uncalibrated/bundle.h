@@ -13,7 +13,7 @@
  * the logarithm of depth at the cells' corners, so that the surface is integrable by construction; its mean is 0, and
  * depth is in units of the camera's mean distance. Priors, all small compared with the pictures, determine what near
  * lights hardly do: the lights have about equal distances from the object, and the surface does not bend or twist more
- * than necessary. */
+ * than necessary. Where a surface and lights are expected from elsewhere, these are priors, too. */
 #ifndef MERLIN_STEREO_UNCALIBRATED_BUNDLE_H
 #define MERLIN_STEREO_UNCALIBRATED_BUNDLE_H
 
@@ -26,6 +26,14 @@ typedef struct bundle_cell {
     float level;   /* ordinary value of the cell */
 } bundle_cell;
 
+/* Surface and lights that are expected (pst_expected), as a bundle's unknowns. */
+typedef struct bundle_expected {
+    vec3 *place;   /* per light: its position */
+    float *sure;   /* per light: the probability that there is one */
+    float *slope;  /* two per cell: of log depth by a ray's x and y */
+    float *weight; /* per cell: 0 where no surface is expected, less where it is steep */
+} bundle_expected;
+
 typedef struct bundle {
     const pst_problem *problem;
     pinhole camera;
@@ -36,12 +44,13 @@ typedef struct bundle {
     float radius;               /* radius of the object's outline in units of depth */
     vec3 centre;                /* centre of the object, at its mean depth */
     bundle_cell *cell;
-    int *corner_at;   /* (columns + 1) × (rows + 1): index of the corner, -1 if no cell has it */
-    float *value;     /* cells × lights */
-    float *precision; /* cells × lights: 1 / (an ordinary residual)², 0 if there is no value */
-    float *log_depth; /* per corner */
-    vec3 *position;   /* per light, in units of depth */
-    double cost;      /* cost of the last refinement: the sum of each value's share of an outlier, and the priors */
+    int *corner_at;            /* (columns + 1) × (rows + 1): index of the corner, -1 if no cell has it */
+    float *value;              /* cells × lights */
+    float *precision;          /* cells × lights: 1 / (an ordinary residual)², 0 if there is no value */
+    float *log_depth;          /* per corner */
+    vec3 *position;            /* per light, in units of depth */
+    bundle_expected *expected; /* NULL: nothing is */
+    double cost; /* cost of the last refinement: the sum of each value's share of an outlier, and the priors */
 } bundle;
 
 /* Makes the grid. across: number of cells along the longer side of the object. The camera has a perspective.
@@ -55,6 +64,17 @@ float bundle_depth(const bundle *b, float x, float y);
 /* Sets the surface that inflating the object's outline gives (inflate.h), with heights multiplied by relief; below 0: a
  * bowl. */
 status bundle_inflate(bundle *b, float relief);
+
+/* Computes what is expected from the problem's (bundle_expected.c); does nothing if it has none, or no depth. */
+status bundle_expect(bundle *b);
+void bundle_expect_free(bundle_expected *e);
+/* Sets the surface and the lights that are expected. */
+void bundle_take_expected(bundle *b);
+/* Makes the expected normals, moved by what the cells' normals differ from their mean in each cell, so that they keep
+ * detail which no cell has. */
+status bundle_bend_normals(const bundle *b, img *out);
+/* Returns a cell's normal, facing the camera. */
+vec3 bundle_normal(const bundle *b, int cell);
 
 /* Copies surface and lights from another grid for the same problem; albedos are unchanged. */
 void bundle_take(bundle *b, const bundle *from);

@@ -177,7 +177,7 @@ static double mean_distance(const pst_problem *p, const hypothesis *h)
 
 static status find_near(const pst_problem *p, const img *expected, hypothesis *h, double *distance)
 {
-    status s = pst_find_near_lights(p, &p->capture->camera, h->light, &h->depth);
+    status s = pst_find_near_lights(p, &p->capture->camera, h->light, &h->depth, NULL);
     if (s != OK) return s;
     *distance = mean_distance(p, h);
     if (*distance >= farthest) return fail(MERLIN_BAD_INPUT, "the lights are not near");
@@ -292,12 +292,14 @@ status pst_solve_uncalibrated(const pst_problem *p, merlin_surface *out)
 {
     const merlin_capture *c = p->capture;
     size_t count = (size_t)c->count;
-    if (count < PST_FEWEST_UNKNOWN)
+    const bool few = count < PST_FEWEST_UNKNOWN, helped = p->expected && p->expected->depth && p->expected->compared;
+    if (few && !helped)
         return fail(MERLIN_BAD_INPUT, "unknown lights need %d or more pictures, not %d", PST_FEWEST_UNKNOWN, c->count);
     merlin_capture seen = *c;
     pst_problem q = *p;
     seen.camera = perspective_of(c);
     q.capture = &seen;
+    if (few) return pst_solve_few(&q, out);
     hypothesis near = {.light = calloc(count, sizeof *near.light)};
     hypothesis distant = {.light = calloc(count, sizeof *distant.light)};
     status s = near.light && distant.light ? OK : fail(MERLIN_NO_MEMORY, "no memory for %zu lights", count);

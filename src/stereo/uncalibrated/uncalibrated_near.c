@@ -127,6 +127,14 @@ static status refine(bundle *b, const pass *passes, int count)
     return s;
 }
 
+/* Solves from what is expected. */
+static status solve_expected(bundle *b)
+{
+    bundle_take_expected(b);
+    bundle_fit_albedo(b);
+    return refine(b, coarse_pass, sizeof coarse_pass / sizeof *coarse_pass);
+}
+
 /* Solves from a start. least: cost of the previous starts. */
 static status solve_from(const start *from, double least, bundle *b)
 {
@@ -159,6 +167,21 @@ static status solve_coarse(const pst_problem *p, const pinhole *camera, bundle *
     return s;
 }
 
+/* Takes the solution from what is expected if it costs less. */
+static status try_expected(const pst_problem *p, const pinhole *camera, bundle *best)
+{
+    bundle trial;
+    status s = bundle_new(p, camera, COARSE, &trial);
+    if (s == OK && trial.expected) s = solve_expected(&trial);
+    bundle worse = trial;
+    if (s == OK && trial.expected && (!best->problem || trial.cost < best->cost)) {
+        worse = *best;
+        *best = trial;
+    }
+    bundle_free(&worse);
+    return s;
+}
+
 static status take_result(const bundle *b, merlin_light *light, img *depth)
 {
     const pst_problem *p = b->problem;
@@ -178,10 +201,12 @@ static status take_result(const bundle *b, merlin_light *light, img *depth)
     return OK;
 }
 
-status pst_find_near_lights(const pst_problem *p, const pinhole *camera, merlin_light *light, img *depth)
+status pst_find_near_lights(const pst_problem *p, const pinhole *camera, merlin_light *light, img *depth, img *normal)
 {
     bundle coarse = {0}, fine = {0};
-    status s = solve_coarse(p, camera, &coarse);
+    /* fewer pictures are explained by any surface */
+    status s = p->capture->count >= PST_FEWEST_UNKNOWN ? solve_coarse(p, camera, &coarse) : OK;
+    if (s == OK) s = try_expected(p, camera, &coarse);
     if (s == OK) s = bundle_new(p, camera, FINE, &fine);
     if (s == OK) {
         bundle_take(&fine, &coarse);
@@ -189,6 +214,7 @@ status pst_find_near_lights(const pst_problem *p, const pinhole *camera, merlin_
         s = refine(&fine, fine_pass, sizeof fine_pass / sizeof *fine_pass);
     }
     if (s == OK) s = take_result(&fine, light, depth);
+    if (s == OK && normal) s = bundle_bend_normals(&fine, normal);
     bundle_free(&coarse);
     bundle_free(&fine);
     return s;

@@ -12,7 +12,12 @@
 status pst_find_distant_lights(const pst_problem *p, const img *inflated, merlin_light *light, pst_rotation *rotation);
 
 /* Finds positions of near lights of one power, and a depth map consistent with them (uncalibrated_near.c). camera: with
- * a perspective. depth is made here. */
-status pst_find_near_lights(const pst_problem *p, const pinhole *camera, merlin_light *light, img *depth);
+ * a perspective. depth is made here. normal (may be NULL) receives the expected normals, bent as the surface found. */
+status pst_find_near_lights(const pst_problem *p, const pinhole *camera, merlin_light *light, img *depth, img *normal);
+
+/* Solves fewer than PST_FEWEST_UNKNOWN pictures by what is expected (uncalibrated_few.c). p's capture has a
+ * perspective.
+ */
+status pst_solve_few(const pst_problem *p, merlin_surface *out);
 
 #endif
