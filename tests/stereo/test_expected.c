@@ -153,6 +153,7 @@ static void few_pictures_correct_what_is_expected(void **state)
     const double before = mean_angle(&c, &e.normal), after = mean_angle(&c, &s.normal);
     print_message("four pictures: %.2f degrees, expected %.2f\n", after, before);
     assert_true(before > 8 && after < 0.6 * before);
+    assert_false(s.lights_unsure);
     merlin_surface_free(&s);
     /* without the lights' distances so few are refused, as they are without anything */
     const pst_expected coarse = {&e.normal, NULL, e.light, NULL, NULL};
@@ -166,12 +167,38 @@ static void few_pictures_correct_what_is_expected(void **state)
     capture_drop(&c);
 }
 
+/* No surface explains pictures that have other marks each. */
+static void few_pictures_of_several_objects_are_unsure(void **state)
+{
+    (void)state;
+    merlin_capture c;
+    merlin_surface s;
+    ball_expectation e;
+    const merlin_stereo_params params = {.method = MERLIN_STEREO_UNCALIBRATED, .unchecked = 1};
+    c.camera.distance = ball_capture(&c, FEW, torch, 0, 0);
+    c.lighting = MERLIN_UNKNOWN_LIGHTS;
+    expect_ball(&c, 0.6f, &e);
+    for (int k = 0; k < FEW; k++)
+        for (int i = 0; i < BALL_SIZE * BALL_SIZE; i++) {
+            rng r = rng_at(3, (uint64_t)(i / BALL_SIZE / 12 * 100 + i % BALL_SIZE / 12), (uint64_t)k);
+            if (rng_uniform(&r) < 0.5f) c.picture[k][i] = (uint16_t)(c.picture[k][i] / 4);
+        }
+    const pst_expected expected = {&e.normal, &e.depth, e.light, e.light, e.near};
+    assert_int_equal(pst_solve_expecting(&c, &params, &expected, &s), OK);
+    assert_true(s.lights_unsure);
+    merlin_surface_free(&s);
+    img_free(&e.normal);
+    img_free(&e.depth);
+    capture_drop(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_expected_surface_decides_what_strengths_do_not),
         cmocka_unit_test(lights_that_nobody_expects_are_unsure),
         cmocka_unit_test(few_pictures_correct_what_is_expected),
+        cmocka_unit_test(few_pictures_of_several_objects_are_unsure),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -304,7 +304,7 @@ int merlin_doubt_message(const merlin_maps *maps, merlin_doubt doubt, char *text
                         "%s: shape is the network's alone, whose normals are off by 15 to 25 degrees; more pictures, "
                         "all from one place, under lights from more sides, give a better one",
                         maps->photographs < PHOTOGRAPHS_ENOUGH
-                            ? "photometric stereo needs 7 pictures under unknown lights"
+                            ? "these fewer than 7 pictures do not tell where their lights are"
                             : "photometric stereo does not find the lights of these pictures");
     case MERLIN_DOUBT_OBJECT_SMALL:
         return snprintf(text, room, "the object has %zu pixels alone, of the 65,000 that the model is made for",

@@ -201,7 +201,17 @@ static status take_result(const bundle *b, merlin_light *light, img *depth)
     return OK;
 }
 
-status pst_find_near_lights(const pst_problem *p, const pinhole *camera, merlin_light *light, img *depth, img *normal)
+/* Returns the mean cost of the values alone. */
+static double cost_of_value(const bundle *b)
+{
+    double sum = 0;
+    for (int k = 0; k < b->lights; k++)
+        sum += bundle_light_cost(b, k, b->position[k], last_pass.width);
+    return sum / ((double)b->cells * b->lights);
+}
+
+status pst_find_near_lights(const pst_problem *p, const pinhole *camera, merlin_light *light, img *depth,
+                            pst_near_bend *bend)
 {
     bundle coarse = {0}, fine = {0};
     /* fewer pictures are explained by any surface */
@@ -214,7 +224,8 @@ status pst_find_near_lights(const pst_problem *p, const pinhole *camera, merlin_
         s = refine(&fine, fine_pass, sizeof fine_pass / sizeof *fine_pass);
     }
     if (s == OK) s = take_result(&fine, light, depth);
-    if (s == OK && normal) s = bundle_bend_normals(&fine, normal);
+    if (s == OK && bend) s = bundle_bend_normals(&fine, &bend->normal);
+    if (s == OK && bend) bend->cost_of_value = cost_of_value(&fine);
     bundle_free(&coarse);
     bundle_free(&fine);
     return s;

@@ -11,9 +11,16 @@
  * unsure. */
 status pst_find_distant_lights(const pst_problem *p, const img *inflated, merlin_light *light, pst_rotation *rotation);
 
+/* The expected normals, bent as the surface that was found, and the cost of each value, with the priors' share. */
+typedef struct pst_near_bend {
+    img normal;
+    double cost_of_value;
+} pst_near_bend;
+
 /* Finds positions of near lights of one power, and a depth map consistent with them (uncalibrated_near.c). camera: with
- * a perspective. depth is made here. normal (may be NULL) receives the expected normals, bent as the surface found. */
-status pst_find_near_lights(const pst_problem *p, const pinhole *camera, merlin_light *light, img *depth, img *normal);
+ * a perspective. depth is made here, and what bend (may be NULL, else zeros) has. */
+status pst_find_near_lights(const pst_problem *p, const pinhole *camera, merlin_light *light, img *depth,
+                            pst_near_bend *bend);
 
 /* Solves fewer than PST_FEWEST_UNKNOWN pictures by what is expected (uncalibrated_few.c). p's capture has a
  * perspective.
