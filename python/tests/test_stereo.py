@@ -161,7 +161,7 @@ def test_a_capture_makes_maps(sphere, model):
     maps = capture.maps(model, views=1, progress=lambda stage, _share: stages.append(stage))
     assert maps.photographs == len(pictures) and maps.refined and "estimating" in stages
     assert (maps.normal * normal)[inside].sum(axis=1).mean() > np.cos(np.radians(11))
-    with pytest.warns(merlin.MerlinWarning, match="needs 7 pictures"):
+    with pytest.warns(merlin.MerlinWarning, match="fewer than 7 pictures"):
         few = merlin.Capture("unknown", mask=inside)
         few.add(pictures[0].astype(np.float32), linear=True)
         few.add(pictures[1].astype(np.float32), linear=True)

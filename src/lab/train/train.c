@@ -196,20 +196,19 @@ static status build(run *r)
     nn_adam_options adam = {(float)c->beta1, (float)c->beta2, 1e-8f, (float)c->clip_norm, (float)c->weight_decay};
     train_source source = {r->data,  c, r->model.input_global, is_lit_by_both(r), is_lit_by_any(r), r->training_count,
                            r->batch, 1};
-    const int most = (int)c->most_pictures;
     status s = model_build(&r->model, part_of(c), &r->graph);
     if (s == OK) s = nn_params_new(r->graph, (uint64_t)c->seed, &r->params);
     if (s == OK) s = load_weights(r->params, r->options);
     if (s == OK) s = train_rates_set(&r->model, c, r->params);
     if (s == OK) s = nn_adam_new(r->params, &adam, &r->adam);
     if (s == OK && c->average_decay > 0) s = train_average_new(r->params, c->average_decay, &r->average);
-    if (s == OK) s = train_programs_new(r->graph, r->params, &options, &source, most, &r->programs);
+    if (s == OK) s = train_programs_new(r->graph, r->params, &options, &source, (int)c->most_pictures, &r->programs);
     if (s == OK) s = record_training(r);
     if (s != OK) return s;
     weigh_losses(&r->programs, c);
     if (c->validation_count == 0) return OK;
     options.purpose = NN_INFER;
-    s = train_programs_new(r->graph, r->params, &options, &source, most, &r->validation);
+    s = train_programs_new(r->graph, r->params, &options, &source, (int)c->most_pictures, &r->validation);
     weigh_losses(&r->validation, c);
     return s;
 }

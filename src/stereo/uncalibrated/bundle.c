@@ -170,7 +170,6 @@ status bundle_new(const pst_problem *p, const pinhole *camera, int across, bundl
     }
     if (s == OK) s = allocate_values(out);
     if (s == OK) s = read_cells(out);
-    if (s == OK) s = bundle_expect(out);
     if (s != OK) bundle_free(out);
     return s;
 }
@@ -182,7 +181,11 @@ void bundle_free(bundle *b)
     free(b->value);
     free(b->log_depth);
     free(b->position);
-    bundle_expect_free(b->expected);
+    if (b->expected) {
+        free(b->expected->place);
+        free(b->expected->sure);
+        free(b->expected);
+    }
     *b = (bundle){0};
 }
 

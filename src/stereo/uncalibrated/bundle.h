@@ -65,14 +65,6 @@ float bundle_depth(const bundle *b, float x, float y);
  * bowl. */
 status bundle_inflate(bundle *b, float relief);
 
-/* Computes what is expected from the problem's (bundle_expected.c); does nothing if it has none, or no depth. */
-status bundle_expect(bundle *b);
-void bundle_expect_free(bundle_expected *e);
-/* Sets the surface and the lights that are expected. */
-void bundle_take_expected(bundle *b);
-/* Makes the expected normals, moved by what the cells' normals differ from their mean in each cell, so that they keep
- * detail which no cell has. */
-status bundle_bend_normals(const bundle *b, img *out);
 /* Returns a cell's normal, facing the camera. */
 vec3 bundle_normal(const bundle *b, int cell);
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* What is expected of a bundle's surface and lights, from normals, depth and lights of the pictures. */
+#include "stereo/uncalibrated/bundle_expected.h"
+
 #include <math.h>
 #include <stdlib.h>
 
 #include "stereo/algebra/matrix3.h"
-#include "stereo/uncalibrated/bundle.h"
 
 /* Largest slope of log depth that is expected. */
 static const float steepest = 4;
@@ -81,14 +81,6 @@ status bundle_expect(bundle *b)
     expect_slopes(b, e);
     expect_lights(b, e);
     return OK;
-}
-
-void bundle_expect_free(bundle_expected *e)
-{
-    if (!e) return;
-    free(e->place);
-    free(e->sure);
-    free(e);
 }
 
 /* Averages the logarithm of the expected depth about a corner; false where there is none. */

@@ -8,16 +8,8 @@
 #include "base/number.h"
 #include "stereo/algebra/dense.h"
 #include "stereo/uncalibrated/bundle.h"
+#include "stereo/uncalibrated/bundle_priors.h"
 
-/* Weights of priors in units of an outlier: for the logarithm of a light's distance relative to the lights' mean; for a
- * bend and a twist of slope 1 between neighbouring cells, each times the number of lights; for the mean depth. */
-static const double equal_distance = 1, bending = 0.003, twisting = 0.02, fixed_depth = 1e5;
-/* The same for what is expected, of eight pictures: a slope of 1, each time per cell; a direction, times 1 minus the
- * cosine, twice; the logarithm of a distance. Powers of the number of pictures by which more of them reduce it, and
- * fewer raise it: what is expected errs the same way everywhere, and many pictures know better
- * (docs/notes/several_photographs.md). Least cosine that counts as curvature. */
-static const double expected_slope = 0.3, expected_direction = 0.3, expected_distance = 0.1;
-static const double eight = 8, many_fall = 4, few_rise = 1.7, least_curved = 0.05;
 /* Steps end at this gain or this damping, which is partly shared by the unknowns of a kind (shared_damping). Least
  * share of a value's weight that counts as curvature. Limits of lights' distances in radii of the object. */
 static const double settled = 1e-6, most_damped = 1e8, shared_damping = 0.1;
@@ -28,19 +20,6 @@ typedef struct patch {
     vec3 at, m;
     float length; /* length of m */
 } patch;
-
-/* Equations of a step: unknowns are the corners, then three per light: two rotations about the centre (radians), and
- * the logarithm of its distance. */
-typedef struct equations {
-    int size;
-    size_t corners;
-    double *matrix; /* lower triangle, row-major */
-    double *right, *coupling;
-    double *damped, *step;
-    vec3 *turn; /* lights × 3: derivatives of a light's position by its unknowns */
-    float *old_depth, *old_albedo;
-    vec3 *old_position;
-} equations;
 
 /* Computes a patch: the slopes s_x, s_y of log depth give (s_x, s_y, 1 + x s_x + y s_y), the cross product of the
  * surface's tangents. */
@@ -121,147 +100,12 @@ void bundle_fit_albedo(bundle *b)
         fit_albedos(b, 1);
 }
 
-/* ---- priors ---- */
-
-/* A quadratic form of corners: factor · (Σ share·log depth - target)². */
-typedef struct form {
-    const int *corner;
-    const double *share;
-    int count;
-    double factor, target;
-} form;
-typedef void each_form(void *context, const form *f);
-
-/* Returns the factor of what is expected, by the number of pictures. */
-static double trust(const bundle *b)
-{
-    return pow(eight / b->lights, b->lights > eight ? many_fall : few_rise);
-}
-
-/* Lists the slopes that are expected of a cell. */
-static void list_expected(const bundle *b, int i, each_form *tell, void *context)
-{
-    const bundle_expected *e = b->expected;
-    const double unit = 1 / (2 * (double)b->step), weight = expected_slope * trust(b) * (double)e->weight[i];
-    const double along[2][4] = {{-unit, unit, -unit, unit}, {unit, unit, -unit, -unit}};
-    for (int axis = 0; axis < 2 && weight > 0; axis++)
-        tell(context, &(form){b->cell[i].corner, along[axis], 4, weight, (double)e->slope[2 * i + axis]});
-}
-
-static void list_forms(const bundle *b, each_form *tell, void *context)
-{
-    static const double bend[3] = {1, -2, 1}, twist[4] = {1, -1, -1, 1};
-    double unit = b->lights / ((double)b->step * (double)b->step);
-    for (int i = 0; i < b->cells; i++)
-        tell(context, &(form){b->cell[i].corner, twist, 4, twisting * unit, 0});
-    for (int i = 0; b->expected && i < b->cells; i++)
-        list_expected(b, i, tell, context);
-    int width = b->columns + 1;
-    for (int k = 0; k < 2; k++) {
-        int stride = k ? width : 1;
-        for (int i = 0; i < width * (b->rows + 1); i++) {
-            if (k ? i + 2 * width >= width * (b->rows + 1) : i % width + 2 >= width) continue;
-            const int *at = b->corner_at;
-            int corner[3] = {at[i], at[i + stride], at[i + 2 * stride]};
-            if (corner[0] >= 0 && corner[1] >= 0 && corner[2] >= 0)
-                tell(context, &(form){corner, bend, 3, bending * unit, 0});
-        }
-    }
-}
-
-typedef struct form_sum {
-    const bundle *bundle;
-    equations *equations; /* NULL: cost only */
-    double cost;
-} form_sum;
-
-static void add_form(void *context, const form *of)
-{
-    form_sum *f = context;
-    const int *corner = of->corner;
-    double value = -of->target;
-    for (int i = 0; i < of->count; i++)
-        value += of->share[i] * (double)f->bundle->log_depth[corner[i]];
-    f->cost += of->factor * value * value;
-    if (!f->equations) return;
-    size_t n = (size_t)f->equations->size;
-    for (int i = 0; i < of->count; i++) {
-        f->equations->right[corner[i]] -= of->factor * of->share[i] * value;
-        for (int j = 0; j < of->count; j++)
-            if (corner[j] <= corner[i])
-                f->equations->matrix[(size_t)corner[i] * n + (size_t)corner[j]] +=
-                    of->factor * of->share[i] * of->share[j];
-    }
-}
-
-static float log_distance(const bundle *b, int light)
-{
-    return logf(vec3_length(vec3_sub(b->position[light], b->centre)));
-}
-
-/* Adds what is expected of the lights: the cosine between a direction and the expected one, and the logarithm of the
- * distances' ratio. */
-static double add_expected_lights(const bundle *b, equations *y)
-{
-    const bundle_expected *e = b->expected;
-    double cost = 0;
-    for (int k = 0; k < b->lights; k++) {
-        const double weight = trust(b) * (double)e->sure[k] * b->cells, far = expected_distance * weight;
-        const vec3 from = vec3_sub(b->position[k], b->centre), wanted = vec3_sub(e->place[k], b->centre);
-        const vec3 aim = vec3_normalize(wanted);
-        const double cosine = (double)vec3_dot(aim, vec3_normalize(from));
-        const double off = log((double)vec3_length(from) / (double)vec3_length(wanted));
-        cost += 2 * expected_direction * weight * (1 - cosine) + far * off * off;
-        if (!y) continue;
-        const size_t n = (size_t)y->size, at = (size_t)b->corners + 3 * (size_t)k;
-        for (size_t i = 0; i < 2; i++) {
-            y->right[at + i] += expected_direction * weight * (double)vec3_dot(aim, vec3_normalize(y->turn[3 * k + i]));
-            y->matrix[(at + i) * n + at + i] += expected_direction * weight * fmax(cosine, least_curved);
-        }
-        y->right[at + 2] -= far * off;
-        y->matrix[(at + 2) * n + at + 2] += far;
-    }
-    return cost;
-}
-
-/* Adds the priors: twice the halves of the quadratic forms, as matrix is half the second derivative, as for the values.
- */
-static double add_priors(const bundle *b, equations *y)
-{
-    form_sum f = {b, y, 0};
-    list_forms(b, add_form, &f);
-    size_t n = y ? (size_t)y->size : 0;
-    double mean = 0, sum = 0, prior = equal_distance * b->cells;
-    for (int i = 0; i < b->corners; i++)
-        sum += (double)b->log_depth[i] / b->corners;
-    f.cost += fixed_depth * sum * sum;
-    double share = fixed_depth / ((double)b->corners * b->corners);
-    for (size_t i = 0; y && i < (size_t)b->corners; i++) {
-        y->right[i] -= fixed_depth * sum / b->corners;
-        for (size_t j = 0; j <= i; j++)
-            y->matrix[i * n + j] += share;
-    }
-    for (int k = 0; k < b->lights; k++)
-        mean += (double)log_distance(b, k) / b->lights;
-    for (int k = 0; k < b->lights; k++) {
-        double off = (double)log_distance(b, k) - mean;
-        f.cost += prior * off * off;
-        if (!y) continue;
-        size_t at = (size_t)b->corners + 3 * (size_t)k + 2;
-        y->right[at] -= prior * off;
-        for (int j = 0; j <= k; j++)
-            y->matrix[at * n + (size_t)(b->corners + 3 * j + 2)] += prior * ((j == k) - 1.0 / b->lights);
-    }
-    if (b->expected) f.cost += add_expected_lights(b, y);
-    return f.cost;
-}
-
 /* ---- values ---- */
 
 static double cost_of(const bundle *b, float width)
 {
     size_t lights = (size_t)b->lights;
-    double cost = add_priors(b, NULL);
+    double cost = bundle_add_priors(b, NULL);
     for (int i = 0; i < b->cells; i++) {
         const bundle_cell *c = &b->cell[i];
         const float *v = b->value + (size_t)i * lights, *q = b->precision + (size_t)i * lights;
@@ -292,7 +136,7 @@ double bundle_light_cost(const bundle *b, int light, vec3 place, float width)
 }
 
 /* Computes the derivatives of a light's position by its unknowns. */
-static void find_turns(const bundle *b, equations *y)
+static void find_turns(const bundle *b, bundle_equations *y)
 {
     for (int k = 0; k < b->lights; k++) {
         vec3 from = vec3_sub(b->position[k], b->centre);
@@ -326,7 +170,8 @@ typedef struct slopes {
     float corner[4], light[3], albedo;
 } slopes;
 
-static void add_value(const bundle *b, equations *y, const bundle_cell *c, int light, const slopes *j, loss w, float r)
+static void add_value(const bundle *b, bundle_equations *y, const bundle_cell *c, int light, const slopes *j, loss w,
+                      float r)
 {
     size_t n = (size_t)y->size, at = (size_t)b->corners + 3 * (size_t)light;
     double *coupling = y->coupling + 4 + 3 * (size_t)light;
@@ -350,7 +195,7 @@ static void add_value(const bundle *b, equations *y, const bundle_cell *c, int l
 }
 
 /* Eliminates the albedo. square, left: its own curvature and slope. */
-static void eliminate_albedo(const bundle *b, equations *y, const bundle_cell *c, double square, double left)
+static void eliminate_albedo(const bundle *b, bundle_equations *y, const bundle_cell *c, double square, double left)
 {
     size_t n = (size_t)y->size;
     const double *q = y->coupling;
@@ -371,7 +216,7 @@ static void eliminate_albedo(const bundle *b, equations *y, const bundle_cell *c
     }
 }
 
-static void add_cell(const bundle *b, equations *y, int i, float width)
+static void add_cell(const bundle *b, bundle_equations *y, int i, float width)
 {
     size_t lights = (size_t)b->lights;
     const bundle_cell *c = &b->cell[i];
@@ -399,7 +244,7 @@ static void add_cell(const bundle *b, equations *y, int i, float width)
 
 /* ---- steps ---- */
 
-static bool solve_step(equations *y, double damping)
+static bool solve_step(bundle_equations *y, double damping)
 {
     size_t n = (size_t)y->size;
     double mean[2] = {0};
@@ -412,7 +257,7 @@ static bool solve_step(equations *y, double damping)
     return dense_solve_positive(y->damped, y->size, y->step);
 }
 
-static void take_step(bundle *b, const equations *y)
+static void take_step(bundle *b, const bundle_equations *y)
 {
     memcpy(y->old_depth, b->log_depth, (size_t)b->corners * sizeof *y->old_depth);
     memcpy(y->old_position, b->position, (size_t)b->lights * sizeof *y->old_position);
@@ -431,7 +276,7 @@ static void take_step(bundle *b, const equations *y)
     }
 }
 
-static void undo_step(bundle *b, const equations *y)
+static void undo_step(bundle *b, const bundle_equations *y)
 {
     memcpy(b->log_depth, y->old_depth, (size_t)b->corners * sizeof *y->old_depth);
     memcpy(b->position, y->old_position, (size_t)b->lights * sizeof *y->old_position);
@@ -440,7 +285,7 @@ static void undo_step(bundle *b, const equations *y)
 }
 
 /* Tries shorter and shorter steps; returns false if none gains. */
-static bool descend(bundle *b, equations *y, float width, double *damping)
+static bool descend(bundle *b, bundle_equations *y, float width, double *damping)
 {
     double before = b->cost;
     for (; *damping < most_damped; *damping *= 5) {
@@ -458,10 +303,10 @@ static bool descend(bundle *b, equations *y, float width, double *damping)
     return false;
 }
 
-static status system_new(const bundle *b, equations *y)
+static status system_new(const bundle *b, bundle_equations *y)
 {
     size_t lights = (size_t)b->lights, n = (size_t)b->corners + 3 * lights;
-    *y = (equations){
+    *y = (bundle_equations){
         .size = (int)n, .corners = (size_t)b->corners, .matrix = malloc((2 * n * n + 3 * n + 4) * sizeof *y->matrix)};
     y->turn = malloc(4 * lights * sizeof *y->turn);
     y->old_depth = malloc((size_t)(b->corners + b->cells) * sizeof *y->old_depth);
@@ -475,27 +320,27 @@ static status system_new(const bundle *b, equations *y)
     return OK;
 }
 
-static void system_free(equations *y)
+static void system_free(bundle_equations *y)
 {
     free(y->matrix);
     free(y->turn);
     free(y->old_depth);
 }
 
-static void assemble(const bundle *b, equations *y, float width)
+static void assemble(const bundle *b, bundle_equations *y, float width)
 {
     size_t n = (size_t)y->size;
     memset(y->matrix, 0, n * n * sizeof *y->matrix);
     memset(y->right, 0, n * sizeof *y->right);
     find_turns(b, y);
-    add_priors(b, y);
+    bundle_add_priors(b, y);
     for (int i = 0; i < b->cells; i++)
         add_cell(b, y, i, width);
 }
 
 status bundle_refine(bundle *b, float width, int steps)
 {
-    equations y;
+    bundle_equations y;
     double damping = 1e-3;
     status s = system_new(b, &y);
     if (s == OK) {

@@ -12,6 +12,7 @@
 #include <stdlib.h>
 
 #include "stereo/uncalibrated/bundle.h"
+#include "stereo/uncalibrated/bundle_expected.h"
 #include "stereo/uncalibrated/uncalibrated_parts.h"
 
 /* Number of cells along the object; number of directions tried for a light, and of repetitions. */
@@ -40,6 +41,15 @@ typedef struct pass {
 
 static const pass coarse_pass[] = {{0.4f, 30}, {0.2f, 30}, {0.1f, 30}}, last_pass = {0.1f, 30};
 static const pass fine_pass[] = {{0.15f, 20}, {0.08f, 30}};
+
+/* Makes a bundle with its priors. */
+static status new_bundle(const pst_problem *p, const pinhole *camera, int across, bundle *out)
+{
+    status s = bundle_new(p, camera, across, out);
+    if (s == OK) s = bundle_expect(out);
+    if (s != OK) bundle_free(out);
+    return s;
+}
 
 /* Returns a position on a spiral over the camera's side of the object and slightly beyond. */
 static vec3 place(const bundle *b, int i, float distance)
@@ -151,11 +161,11 @@ static status solve_from(const start *from, double least, bundle *b)
 
 static status solve_coarse(const pst_problem *p, const pinhole *camera, bundle *best)
 {
-    status s = bundle_new(p, camera, COARSE, best);
+    status s = new_bundle(p, camera, COARSE, best);
     if (s == OK) s = solve_from(&starts[0], HUGE_VAL, best);
     for (int i = 1; i < STARTS && s == OK; i++) {
         bundle trial;
-        s = bundle_new(p, camera, COARSE, &trial);
+        s = new_bundle(p, camera, COARSE, &trial);
         if (s == OK) s = solve_from(&starts[i], best->cost, &trial);
         bundle worse = trial;
         if (s == OK && trial.cost < best->cost) {
@@ -171,7 +181,7 @@ static status solve_coarse(const pst_problem *p, const pinhole *camera, bundle *
 static status try_expected(const pst_problem *p, const pinhole *camera, bundle *best)
 {
     bundle trial;
-    status s = bundle_new(p, camera, COARSE, &trial);
+    status s = new_bundle(p, camera, COARSE, &trial);
     if (s == OK && trial.expected) s = solve_expected(&trial);
     bundle worse = trial;
     if (s == OK && trial.expected && (!best->problem || trial.cost < best->cost)) {
@@ -217,7 +227,7 @@ status pst_find_near_lights(const pst_problem *p, const pinhole *camera, merlin_
     /* fewer pictures are explained by any surface */
     status s = p->capture->count >= PST_FEWEST_UNKNOWN ? solve_coarse(p, camera, &coarse) : OK;
     if (s == OK) s = try_expected(p, camera, &coarse);
-    if (s == OK) s = bundle_new(p, camera, FINE, &fine);
+    if (s == OK) s = new_bundle(p, camera, FINE, &fine);
     if (s == OK) {
         bundle_take(&fine, &coarse);
         bundle_fit_albedo(&fine);
