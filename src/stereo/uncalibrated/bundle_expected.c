@@ -30,9 +30,10 @@ static vec3 mean_normal(const bundle *b, const bundle_cell *cell)
     const float top = b->camera.y - cell->y * b->camera.focal - 0.5f * (float)b->side;
     vec3 sum = {0, 0, 0};
     for (int k = 0; k < SAMPLES * SAMPLES; k++) {
+        const int i = k % SAMPLES, j = k / SAMPLES;
         size_t at;
-        const float x = left + ((float)(k % SAMPLES) + 0.5f) / SAMPLES * (float)b->side;
-        const float y = top + ((float)(k / SAMPLES) + 0.5f) / SAMPLES * (float)b->side;
+        const float x = left + ((float)i + 0.5f) / SAMPLES * (float)b->side;
+        const float y = top + ((float)j + 0.5f) / SAMPLES * (float)b->side;
         if (pixel_of(b, x, y, &at)) sum = vec3_add(sum, vec3_of(normal->data + 3 * at));
     }
     return sum;
@@ -90,10 +91,10 @@ static bool log_depth_at(const bundle *b, int column, int row, double *out)
     double sum = 0;
     int count = 0;
     for (int k = 0; k < SAMPLES * SAMPLES; k++) {
+        const int i = k % SAMPLES, j = k / SAMPLES;
         size_t at;
-        const float x =
-            (float)b->left + ((float)column + ((float)(k % SAMPLES) + 0.5f) / SAMPLES - 0.5f) * (float)b->side;
-        const float y = (float)b->top + ((float)row + ((float)(k / SAMPLES) + 0.5f) / SAMPLES - 0.5f) * (float)b->side;
+        const float x = (float)b->left + ((float)column + ((float)i + 0.5f) / SAMPLES - 0.5f) * (float)b->side;
+        const float y = (float)b->top + ((float)row + ((float)j + 0.5f) / SAMPLES - 0.5f) * (float)b->side;
         if (!pixel_of(b, x, y, &at) || !(b->problem->expected->depth->data[at] > 0)) continue;
         sum += log((double)b->problem->expected->depth->data[at]);
         count++;
@@ -178,9 +179,9 @@ status bundle_bend_normals(const bundle *b, img *out)
                                : fail(MERLIN_NO_MEMORY, "no memory for %zu cells", cells);
     if (s == OK) find_bends(b, &d);
     for (size_t i = 0; s == OK && i < p->pixel_count; i++) {
-        const size_t at = p->pixel[i];
+        const size_t at = p->pixel[i], column = at % width, row = at / width;
         const vec3 n = vec3_of(p->expected->normal->data + 3 * at);
-        const vec3 bent = vec3_add(n, bend_at(&d, (float)(at % width) + 0.5f, (float)(at / width) + 0.5f));
+        const vec3 bent = vec3_add(n, bend_at(&d, (float)column + 0.5f, (float)row + 0.5f));
         vec3_put(pst_facing(bent), out->data + 3 * at);
     }
     free(d.at);
