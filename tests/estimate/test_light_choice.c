@@ -152,6 +152,27 @@ static void a_model_of_one_light_takes_no_other_beside_it(void **state)
     merlin_model_close(model);
 }
 
+static void lights_are_told_by_a_model_that_compares(void **state)
+{
+    const fixture *f = *state;
+    float code[MODEL_LIGHTS] = {0};
+    merlin_model *model = NULL;
+    see(f, code);
+    const char *lights = scratch_path("lights.safetensors");
+    assert_int_equal(write_random_weights_of("merlin-lights", lights), OK);
+    assert_int_equal(merlin_model_open(lights, &model), MERLIN_BAD_INPUT);
+    assert_int_equal(merlin_model_open(f->flash, &model), MERLIN_OK);
+    assert_int_equal(merlin_model_add_lights(model, lights), MERLIN_WRONG_USE);
+    merlin_model_close(model);
+    assert_int_equal(merlin_model_open(f->any, &model), MERLIN_OK);
+    assert_int_equal(merlin_model_add_lights(model, "none.safetensors"), MERLIN_BAD_INPUT);
+    assert_int_equal(merlin_model_add_lights(model, f->any), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_model_add_lights(model, lights), MERLIN_OK);
+    assert_int_equal(merlin_model_add_lights(model, lights), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_model_add_lights(NULL, lights), MERLIN_WRONG_USE);
+    merlin_model_close(model);
+}
+
 static void weights_for_flashes_are_read_when_one_is_seen(void **state)
 {
     const fixture *f = *state;
@@ -295,6 +316,7 @@ int main(void)
         cmocka_unit_test(what_is_seen_decides),
         cmocka_unit_test(the_camera_and_the_photographer_know_better),
         cmocka_unit_test(a_model_of_one_light_takes_no_other_beside_it),
+        cmocka_unit_test(lights_are_told_by_a_model_that_compares),
         cmocka_unit_test(weights_for_flashes_are_read_when_one_is_seen),
         cmocka_unit_test(found_light_is_the_sum_of_its_lamps),
         cmocka_unit_test(found_light_is_kept_and_turns),
