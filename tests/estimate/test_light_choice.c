@@ -158,7 +158,8 @@ static void lights_are_told_by_a_model_that_compares(void **state)
     float code[MODEL_LIGHTS] = {0};
     merlin_model *model = NULL;
     see(f, code);
-    const char *lights = scratch_path("lights.safetensors");
+    char lights[160];
+    snprintf(lights, sizeof lights, "%s/lights.safetensors", f->folder);
     assert_int_equal(write_random_weights_of("merlin-lights", lights), OK);
     assert_int_equal(merlin_model_open(lights, &model), MERLIN_BAD_INPUT);
     assert_int_equal(merlin_model_open(f->flash, &model), MERLIN_OK);
