@@ -22,6 +22,7 @@ static const double usual_mean = 0.2, whole = 0.9;
 /* The pictures that the network sees. */
 typedef struct seen {
     const merlin_capture *capture;
+    bool compares; /* a network compares them, to refine the maps */
     int count, number[SEEN];
     float lights[SEEN][MODEL_LIGHTS];   /* of each, as the network sees them one by one */
     float compared[SEEN][MODEL_LIGHTS]; /* the same by a network that compares the pictures, if there is one */
@@ -131,8 +132,11 @@ static float field_of_view(const merlin_capture *c)
 static status estimate(merlin_model *model, seen *s, const merlin_params *params, merlin_maps *maps)
 {
     merlin_params p = *params;
-    const estimate_further further = {
-        .count = s->count - 1, .take = take_further, .context = s, .lights = s->lights, .compared = s->compared};
+    const estimate_further further = {.count = s->count - 1,
+                                      .take = take_further,
+                                      .context = s,
+                                      .lights = s->lights,
+                                      .compared = s->compares ? s->compared : NULL};
     img first = {0};
     merlin_object object = {0};
     while (p.views > 1 && p.views * s->count > RUNS)
@@ -155,7 +159,7 @@ static void doubt_several(const seen *s, merlin_maps *maps)
     maps->doubts |= MERLIN_DOUBT_NOT_REFINED;
 }
 
-static status refine(const merlin_model *model, const seen *s, const merlin_params *params, merlin_maps *maps)
+static status refine(const seen *s, const merlin_params *params, merlin_maps *maps)
 {
     const size_t count = (size_t)s->capture->count;
     vec3 *light = calloc(2 * count, sizeof *light), *compared = light + count;
@@ -166,9 +170,7 @@ static status refine(const merlin_model *model, const seen *s, const merlin_para
         compared[s->number[i]] = vec3_of(s->compared[i] + MODEL_LIGHTS_LAMP);
         near[s->number[i]] = s->compared[i][MODEL_LIGHTS_DISTANCE];
     }
-    /* a start from lights of which some are unknown would be a wrong one */
-    const bool all_compared = model->lights && s->count == s->capture->count;
-    const prior_lights lights = {light, all_compared ? compared : NULL, near};
+    const prior_lights lights = {light, s->compares ? compared : NULL, near};
     if (st == OK) st = prior_stereo_refine(s->capture, &lights, params->stop, maps);
     free(light);
     free(near);
@@ -191,9 +193,11 @@ status maps_of_capture(merlin_model *model, const merlin_capture *capture, const
     status s = check(capture);
     if (s != OK) return s;
     seen pictures = choose(capture);
+    /* a start from lights of which some are unknown would be a wrong one */
+    pictures.compares = refined && model->lights && pictures.count == capture->count;
     s = estimate(model, &pictures, params, maps);
     if (s == OK) doubt_several(&pictures, maps);
-    if (s == OK && refined) s = refine(model, &pictures, params, maps);
+    if (s == OK && refined) s = refine(&pictures, params, maps);
     if (s != OK) merlin_maps_free(maps);
     return s;
 }

@@ -6,6 +6,7 @@
 #include "ball.h"
 
 enum { SIZE = 64, LIGHTS = 12 };
+static const merlin_stereo_params unknown = {.method = MERLIN_STEREO_UNCALIBRATED, .unchecked = 1};
 static const relief painted = {.size = SIZE, .lights = LIGHTS, .channels = 3, .exposure = 1.5f};
 
 typedef struct expectation {
@@ -42,8 +43,7 @@ static void expect(const merlin_capture *c, const vec3 *light, float flatter, ex
 static double solve_expecting(const merlin_capture *c, const expectation *e, bool *unsure)
 {
     merlin_surface s;
-    const merlin_stereo_params params = {.method = MERLIN_STEREO_UNCALIBRATED, .unchecked = 1};
-    if (pst_solve_expecting(c, &params, &(pst_expected){&e->normal, NULL, e->light, NULL, NULL}, &s) != OK)
+    if (pst_solve_expecting(c, &unknown, &(pst_expected){&e->normal, NULL, e->light, NULL, NULL}, &s) != OK)
         fail_msg("%s", status_message());
     const double angle = mean_angle(c, &s.normal);
     *unsure = s.lights_unsure;
@@ -110,7 +110,8 @@ static vec3 torch(int i)
     return vec3_make(aside * cosf(turn), aside * sinf(turn), -0.2f);
 }
 
-/* What a network may tell of the ball: flatter by this factor, lights off by some eight degrees, distances by a tenth.
+/* A network's possible estimate of the ball: flatter by a factor, lights off by some eight degrees, distances by a
+ * tenth.
  */
 typedef struct ball_expectation {
     img normal, depth;
@@ -137,6 +138,15 @@ static void expect_ball(const merlin_capture *c, float flatter, ball_expectation
     }
 }
 
+/* Photographs the ball, and makes what is expected of it. */
+static void ball_under_torches(merlin_capture *c, ball_expectation *e)
+{
+    const float distance = ball_capture(c, FEW, torch, 0, 0);
+    c->camera.distance = distance;
+    c->lighting = MERLIN_UNKNOWN_LIGHTS;
+    expect_ball(c, 0.6f, e);
+}
+
 /* A surface that is too flat, and four pictures, of which it alone explains none. */
 static void few_pictures_correct_what_is_expected(void **state)
 {
@@ -144,12 +154,9 @@ static void few_pictures_correct_what_is_expected(void **state)
     merlin_capture c;
     merlin_surface s;
     ball_expectation e;
-    const merlin_stereo_params params = {.method = MERLIN_STEREO_UNCALIBRATED, .unchecked = 1};
-    c.camera.distance = ball_capture(&c, FEW, torch, 0, 0);
-    c.lighting = MERLIN_UNKNOWN_LIGHTS;
-    expect_ball(&c, 0.6f, &e);
+    ball_under_torches(&c, &e);
     const pst_expected expected = {&e.normal, &e.depth, e.light, e.light, e.near};
-    assert_int_equal(pst_solve_expecting(&c, &params, &expected, &s), OK);
+    assert_int_equal(pst_solve_expecting(&c, &unknown, &expected, &s), OK);
     const double before = mean_angle(&c, &e.normal), after = mean_angle(&c, &s.normal);
     print_message("four pictures: %.2f degrees, expected %.2f\n", after, before);
     assert_true(before > 8 && after < 0.6 * before);
@@ -157,10 +164,10 @@ static void few_pictures_correct_what_is_expected(void **state)
     merlin_surface_free(&s);
     /* without the lights' distances so few are refused, as they are without anything */
     const pst_expected coarse = {&e.normal, NULL, e.light, NULL, NULL};
-    assert_int_equal(pst_solve_expecting(&c, &params, &coarse, &s), MERLIN_BAD_INPUT);
-    assert_int_equal(pst_solve(&c, &params, &s), MERLIN_BAD_INPUT);
+    assert_int_equal(pst_solve_expecting(&c, &unknown, &coarse, &s), MERLIN_BAD_INPUT);
+    assert_int_equal(pst_solve(&c, &unknown, &s), MERLIN_BAD_INPUT);
     c.count = 1;
-    assert_int_equal(pst_solve_expecting(&c, &params, &expected, &s), MERLIN_BAD_INPUT);
+    assert_int_equal(pst_solve_expecting(&c, &unknown, &expected, &s), MERLIN_BAD_INPUT);
     c.count = FEW;
     img_free(&e.normal);
     img_free(&e.depth);
@@ -174,17 +181,14 @@ static void few_pictures_of_several_objects_are_unsure(void **state)
     merlin_capture c;
     merlin_surface s;
     ball_expectation e;
-    const merlin_stereo_params params = {.method = MERLIN_STEREO_UNCALIBRATED, .unchecked = 1};
-    c.camera.distance = ball_capture(&c, FEW, torch, 0, 0);
-    c.lighting = MERLIN_UNKNOWN_LIGHTS;
-    expect_ball(&c, 0.6f, &e);
+    ball_under_torches(&c, &e);
     for (int k = 0; k < FEW; k++)
         for (int i = 0; i < BALL_SIZE * BALL_SIZE; i++) {
             rng r = rng_at(3, (uint64_t)(i / BALL_SIZE / 12 * 100 + i % BALL_SIZE / 12), (uint64_t)k);
             if (rng_uniform(&r) < 0.5f) c.picture[k][i] = (uint16_t)(c.picture[k][i] / 4);
         }
     const pst_expected expected = {&e.normal, &e.depth, e.light, e.light, e.near};
-    assert_int_equal(pst_solve_expecting(&c, &params, &expected, &s), OK);
+    assert_int_equal(pst_solve_expecting(&c, &unknown, &expected, &s), OK);
     assert_true(s.lights_unsure);
     merlin_surface_free(&s);
     img_free(&e.normal);

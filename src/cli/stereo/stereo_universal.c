@@ -19,7 +19,8 @@ static status open_model(const universal_request *r, merlin_model **out)
 {
     char *weights = NULL, *flash = NULL, *lights = NULL;
     status s = photo_find_models(r->weights, &weights, &flash);
-    if (s == OK) s = photo_find_lights(NULL, &lights);
+    /* chosen weights stand alone, as they do for flashes */
+    if (s == OK && flash) s = photo_find_lights(NULL, &lights);
     if (s == OK) s = merlin_model_open(weights, out);
     if (s == OK && lights) s = merlin_model_add_lights(*out, lights);
     free(weights);

@@ -28,14 +28,16 @@ static double trust(const bundle *b)
     return pow(eight / b->lights, b->lights > eight ? many_fall : few_rise);
 }
 
-/* Lists the slopes that are expected of a cell. */
-static void list_expected(const bundle *b, int i, each_form *tell, void *context)
+/* Lists the cells' expected slopes. */
+static void list_expected(const bundle *b, each_form *tell, void *context)
 {
     const bundle_expected *e = b->expected;
-    const double unit = 1 / (2 * (double)b->step), weight = expected_slope * trust(b) * (double)e->weight[i];
+    const double unit = 1 / (2 * (double)b->step), trusted = expected_slope * trust(b);
     const double along[2][4] = {{-unit, unit, -unit, unit}, {unit, unit, -unit, -unit}};
-    for (int axis = 0; axis < 2 && weight > 0; axis++)
-        tell(context, &(form){b->cell[i].corner, along[axis], 4, weight, (double)e->slope[2 * i + axis]});
+    for (int i = 0; i < 2 * b->cells; i++) {
+        const double weight = trusted * (double)e->weight[i / 2];
+        if (weight > 0) tell(context, &(form){b->cell[i / 2].corner, along[i % 2], 4, weight, (double)e->slope[i]});
+    }
 }
 
 static void list_forms(const bundle *b, each_form *tell, void *context)
@@ -44,8 +46,7 @@ static void list_forms(const bundle *b, each_form *tell, void *context)
     double unit = b->lights / ((double)b->step * (double)b->step);
     for (int i = 0; i < b->cells; i++)
         tell(context, &(form){b->cell[i].corner, twist, 4, twisting * unit, 0});
-    for (int i = 0; b->expected && i < b->cells; i++)
-        list_expected(b, i, tell, context);
+    if (b->expected) list_expected(b, tell, context);
     int width = b->columns + 1;
     for (int k = 0; k < 2; k++) {
         int stride = k ? width : 1;
@@ -94,9 +95,10 @@ static float log_distance(const bundle *b, int light)
 static double add_expected_lights(const bundle *b, bundle_equations *y)
 {
     const bundle_expected *e = b->expected;
+    const double trusted = trust(b);
     double cost = 0;
     for (int k = 0; k < b->lights; k++) {
-        const double weight = trust(b) * (double)e->sure[k] * b->cells, far = expected_distance * weight;
+        const double weight = trusted * (double)e->sure[k] * b->cells, far = expected_distance * weight;
         const vec3 from = vec3_sub(b->position[k], b->centre), wanted = vec3_sub(e->place[k], b->centre);
         const vec3 aim = vec3_normalize(wanted);
         const double cosine = (double)vec3_dot(aim, vec3_normalize(from));
