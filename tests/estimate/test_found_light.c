@@ -179,6 +179,12 @@ static void light_has_words(void **state)
     light = (merlin_found_light){.known = 1, .rest = {{1, 1, 1}}};
     merlin_light_words(&light, words, sizeof words);
     assert_string_equal(words, "a room's light");
+    light = (merlin_found_light){.known = 1, .flash = 1};
+    merlin_light_words(&light, words, sizeof words);
+    assert_string_equal(words, "a flash");
+    light.rest[0][0] = light.rest[0][1] = light.rest[0][2] = 0.6f; /* a twelfth of all */
+    merlin_light_words(&light, words, sizeof words);
+    assert_string_equal(words, "a flash and a little other light");
     merlin_light_words(&(merlin_found_light){0}, words, sizeof words);
     assert_string_equal(words, "");
 }

@@ -28,8 +28,11 @@ int merlin_light_words(const merlin_found_light *light, char *text, int size)
     const found_light_shares share = found_light_share(light);
     char of_lamp[LAMP_WORDS] = "";
     const bool flash = share.flash >= NAMED, beam = share.lamp >= NAMED, rest = share.rest >= NAMED;
+    const size_t room = size > 0 ? (size_t)size : 0;
     if (beam) lamp_words(light, of_lamp);
-    return snprintf(text, size > 0 ? (size_t)size : 0, "%s%s%s%s", flash ? "a flash" : "", flash && beam ? " and " : "",
+    if (flash && !beam && !rest && !found_light_is_flash(light))
+        return snprintf(text, room, "a flash and a little other light");
+    return snprintf(text, room, "%s%s%s%s", flash ? "a flash" : "", flash && beam ? " and " : "",
                     of_lamp,
                     !rest           ? ""
                     : flash || beam ? ", in a room"
