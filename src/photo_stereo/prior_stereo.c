@@ -7,6 +7,7 @@
 #include "estimate/relight/maps_surface.h"
 #include "estimate/surface/fuse.h"
 #include "merlin/lights.h"
+#include "photo_stereo/measured_albedo.h"
 #include "stereo/integrate/integrate.h"
 #include "stereo/methods/solve.h"
 
@@ -56,7 +57,7 @@ static status refit_depth(merlin_maps *maps)
     return s;
 }
 
-static status take(const merlin_surface *found, merlin_maps *maps)
+static status take(const merlin_surface *found, int pictures, merlin_maps *maps)
 {
     for (size_t i = 0; i < img_value_count(&maps->mask); i++) {
         if (!(maps->mask.data[i] >= 0.5f)) continue;
@@ -64,6 +65,8 @@ static status take(const merlin_surface *found, merlin_maps *maps)
         if (vec3_dot(n, n) > 0) vec3_put(n, maps->normal.data + 3 * i);
     }
     img_free(&maps->reconstruction);
+    /* each pixel of fewer pictures is dark in too many of them to tell its albedo better than a network guesses it */
+    if (pictures >= PST_FEWEST_UNKNOWN) measured_albedo_take(&found->albedo, maps);
     maps->refined = 1;
     maps->doubts &= ~(unsigned)MERLIN_DOUBT_NOT_REFINED;
     return refit_depth(maps);
@@ -134,7 +137,7 @@ status prior_stereo_refine(const merlin_capture *capture, const prior_lights *li
     merlin_surface found = {0};
     status s = expect(maps, lights, capture->count, &e);
     if (s == OK) s = solve(capture, &e, stop, &found);
-    if (s == OK && !found.lights_unsure) s = take(&found, maps);
+    if (s == OK && !found.lights_unsure) s = take(&found, capture->count, maps);
     merlin_surface_free(&found);
     expectation_free(&e);
     return s == MERLIN_BAD_INPUT ? OK : s; /* the pictures do not tell where the lights are */

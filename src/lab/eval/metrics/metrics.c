@@ -10,7 +10,8 @@
 /* CHUNK: windows of a row that are taken together, so that the loops over them are vectors. */
 enum { REACH = 5, WINDOW = 2 * REACH + 1, MOMENTS = 5, CHUNK = 64 };
 
-double eval_mse(const img *a, const img *b, const img *mask)
+/* Computes the mean squared difference of scale times a and b. */
+static double scaled_mse(const img *a, double scale, const img *b, const img *mask)
 {
     size_t pixels = (size_t)a->width * (size_t)a->height, count = 0;
     int channels = a->channels;
@@ -18,12 +19,29 @@ double eval_mse(const img *a, const img *b, const img *mask)
     for (size_t i = 0; i < pixels; i++) {
         if (!(mask->data[i] > EVAL_MASK_LEVEL)) continue;
         for (int c = 0; c < channels; c++) {
-            double d = (double)a->data[i * (size_t)channels + (size_t)c] - b->data[i * (size_t)channels + (size_t)c];
+            size_t k = i * (size_t)channels + (size_t)c;
+            double d = scale * (double)a->data[k] - (double)b->data[k];
             sum += d * d;
         }
         count += (size_t)channels;
     }
     return count ? sum / (double)count : 0;
+}
+
+double eval_mse(const img *a, const img *b, const img *mask)
+{
+    return scaled_mse(a, 1, b, mask);
+}
+
+double eval_mse_scale_free(const img *a, const img *b, const img *mask)
+{
+    double both = 0, own = 0;
+    for (size_t i = 0, channels = (size_t)a->channels; i < img_value_count(a); i++) {
+        if (!(mask->data[i / channels] > EVAL_MASK_LEVEL)) continue;
+        both += (double)a->data[i] * (double)b->data[i];
+        own += (double)a->data[i] * (double)a->data[i];
+    }
+    return scaled_mse(a, own > 0 ? both / own : 1, b, mask);
 }
 
 /* The angle by atan2 of |p × q| and p·q: acos of the dot product alone loses all digits near zero. */

@@ -165,12 +165,13 @@ static bool look(rendering *r, int i, int j, sight *out)
     return true;
 }
 
-static bool store_truth(const sight *seen, size_t pixel, merlin_capture *c)
+static bool store_truth(const sight *seen, size_t pixel, const img *truth, merlin_capture *c)
 {
-    vec3 normal = {0, 0, 0};
+    vec3 normal = {0, 0, 0}, albedo = {0, 0, 0};
     float depth = 0;
     for (int s = 0; s < seen->count; s++) {
         normal = vec3_add(normal, seen->at[s].normal);
+        albedo = vec3_fma(albedo, 1 / (real)seen->count, seen->at[s].albedo);
         depth -= seen->at[s].position.z / (float)seen->count;
     }
     normal = vec3_normalize(normal);
@@ -178,6 +179,7 @@ static bool store_truth(const sight *seen, size_t pixel, merlin_capture *c)
     c->mask.data[pixel] = 1;
     c->depth_true.data[pixel] = depth;
     vec3_put(normal, c->normal_true.data + 3 * pixel);
+    if (truth) vec3_put(albedo, truth->data + 3 * pixel);
     return true;
 }
 
@@ -193,7 +195,7 @@ static void render_pixel(rendering *r, int i, int j)
     merlin_capture *c = r->capture;
     size_t pixel = (size_t)j * (size_t)how->size + (size_t)i, channels = (size_t)c->channels;
     sight seen;
-    if (!look(r, i, j, &seen) || !store_truth(&seen, pixel, c)) return;
+    if (!look(r, i, j, &seen) || !store_truth(&seen, pixel, how->albedo, c)) return;
     int paths = how->paths > seen.count ? how->paths : seen.count;
     for (int k = 0; k < how->lights; k++) {
         vec3 sum = {0, 0, 0};
@@ -240,6 +242,7 @@ static status allocate(const rendered *how, merlin_capture *c)
     if (s == OK) s = img_new(&c->mask, how->size, how->size, 1);
     if (s == OK) s = img_new(&c->normal_true, how->size, how->size, 3);
     if (s == OK) s = img_new(&c->depth_true, how->size, how->size, 1);
+    if (s == OK && how->albedo) s = img_new(how->albedo, how->size, how->size, 3);
     if (s != OK) return s;
     for (int k = 0; k < how->lights; k++) {
         c->picture[k] = calloc(values, sizeof **c->picture);
@@ -258,6 +261,7 @@ status rendered_capture(const rendered *how, const scene_object *object, merlin_
                             .intensities_known = true,
                             .camera = is_near(how) ? pinhole_of(how->size, how->size, how->fov) : (pinhole){0}};
     job all = {.how = how, .object = object, .capture = out, .result = OK};
+    if (how->albedo) *how->albedo = (img){0};
     status s = allocate(how, out);
     if (s == OK) s = trace_device_new(&all.device);
     if (s == OK) {
@@ -267,5 +271,6 @@ status rendered_capture(const rendered *how, const scene_object *object, merlin_
     }
     if (s == OK && is_near(how)) out->camera.distance = (float)img_mean_within(&out->depth_true, &out->mask);
     if (s != OK) pst_capture_free(out);
+    if (s != OK && how->albedo) img_free(how->albedo);
     return s;
 }

@@ -27,6 +27,7 @@ typedef struct rendered {
     bool matte;      /* Lambert's law alone */
     bool unshadowed; /* without cast shadows, but for the surface's own back */
     bool grey, leds, bulbs, eight_bit;
+    img *albedo; /* where the true albedo is put, 3 channels, to be freed; NULL: nowhere */
 } rendered;
 
 /* Equal scenes give equal pictures, whatever the number of threads. On failure *out needs no freeing. */

@@ -172,5 +172,6 @@ status stereo_object_read(const char *path, stereo_object *out)
 void stereo_object_free(stereo_object *o)
 {
     img_free(&o->photo);
+    img_free(&o->albedo);
     pst_capture_free(&o->capture);
 }

@@ -24,6 +24,7 @@ typedef struct stereo_object {
     char name[32];
     img photo;              /* 3, linear in [0, 1] */
     merlin_capture capture; /* square, with normal_true */
+    img albedo;             /* 3, the true one; empty: unknown */
 } stereo_object;
 
 /* The objects of a folder, sorted: samples, objects' folders, or the folder itself if it is an object's. Free with

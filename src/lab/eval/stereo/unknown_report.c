@@ -1,55 +1,80 @@
 /* SPDX-License-Identifier: MIT */
 #include <cjson/cJSON.h>
 #include <math.h>
+#include <stdbool.h>
 
 #include "base/json/json_put.h"
 #include "base/text/report.h"
 #include "lab/eval/stereo/unknown_table.h"
 
-enum { CELL = 14 };
+enum { CELL = 14, ALBEDO_CELL = 17 };
 
 static const struct {
-    const char *heading, *key;
-} words[UNKNOWN_WAYS] = {{"network", "network"}, {"refined", "refined"}, {"uncalibrated", "uncalibrated"}};
+    const char *heading, *key, *albedo_key;
+} words[UNKNOWN_WAYS] = {{"network", "network", "network_albedo"},
+                         {"refined", "refined", "refined_albedo"},
+                         {"uncalibrated", "uncalibrated", "uncalibrated_albedo"}};
 
-/* Averages the objects that have the row; *refused: those of them without a result. */
-static double mean_of(const unknown_table *t, int row, unknown_way way, size_t *objects, size_t *refused)
+/* Figures of one way over the objects that have a row. */
+typedef struct row_mean {
+    double error, albedo;           /* NAN if there are none */
+    size_t objects, refused, known; /* refused: objects without a result; known: objects whose albedo is known */
+} row_mean;
+
+static row_mean mean_of(const unknown_table *t, int row, unknown_way way)
 {
-    double sum = 0;
-    *objects = *refused = 0;
+    row_mean m = {0};
     for (size_t i = 0; i < t->count; i++) {
         if (unknown_row_pictures(&t->object[i], row) == 0) continue;
-        const double error = t->object[i].error[row][way];
-        ++*objects;
-        *refused += isnan(error);
-        sum += isnan(error) ? 0 : error;
+        const double error = t->object[i].error[row][way], albedo = t->object[i].albedo[row][way];
+        m.objects++;
+        m.refused += isnan(error);
+        m.known += !isnan(albedo);
+        m.error += isnan(error) ? 0 : error;
+        m.albedo += isnan(albedo) ? 0 : albedo;
     }
-    return *objects > *refused ? sum / (double)(*objects - *refused) : (double)NAN;
+    m.error = m.objects > m.refused ? m.error / (double)(m.objects - m.refused) : (double)NAN;
+    m.albedo = m.known ? m.albedo / (double)m.known : (double)NAN;
+    return m;
+}
+
+/* Tells whether there is an albedo to be compared. */
+static bool has_albedo(const unknown_table *t, unknown_way way)
+{
+    for (int row = 0; row < UNKNOWN_ROWS; row++)
+        if (mean_of(t, row, way).known) return true;
+    return false;
 }
 
 static void print_row(const unknown_table *t, int row, FILE *stream)
 {
-    size_t objects, refused;
-    mean_of(t, row, UNKNOWN_NETWORK, &objects, &refused);
+    const size_t objects = mean_of(t, row, UNKNOWN_NETWORK).objects;
     if (objects == 0) return;
     if (row == UNKNOWN_ROWS - 1)
         fprintf(stream, "\n%-*s%*zu", CELL, "all", CELL, objects);
     else
         fprintf(stream, "\n%-*d%*zu", CELL, 1 << row, CELL, objects);
     for (int way = 0; way < UNKNOWN_WAYS; way++) {
-        const double mean = mean_of(t, row, (unknown_way)way, &objects, &refused);
+        const row_mean m = mean_of(t, row, (unknown_way)way);
         char cell[32];
-        snprintf(cell, sizeof cell, refused ? "%.2f (-%zu)" : "%.2f", mean, refused);
+        snprintf(cell, sizeof cell, m.refused ? "%.2f (-%zu)" : "%.2f", m.error, m.refused);
         fprintf(stream, "%*s", CELL, cell);
     }
+    for (int way = 0; way < UNKNOWN_WAYS; way++)
+        if (has_albedo(t, (unknown_way)way))
+            fprintf(stream, "%*.2f", ALBEDO_CELL, 100 * mean_of(t, row, (unknown_way)way).albedo);
 }
 
 void unknown_table_print(const unknown_table *t, FILE *stream)
 {
-    fprintf(stream, "%s on %zu objects; mean angle of normals in degrees, (-N): N of them refused\n\n%-*s%*s", t->model,
-            t->count, CELL, "pictures", CELL, "objects");
+    fprintf(stream,
+            "%s on %zu objects; mean angle of normals in degrees, (-N): N of them refused; albedo's error in 1e-2, its "
+            "scale free\n\n%-*s%*s",
+            t->model, t->count, CELL, "pictures", CELL, "objects");
     for (int way = 0; way < UNKNOWN_WAYS; way++)
         fprintf(stream, "%*s", CELL, words[way].heading);
+    for (int way = 0; way < UNKNOWN_WAYS; way++)
+        if (has_albedo(t, (unknown_way)way)) fprintf(stream, "%*s albedo", ALBEDO_CELL - 7, words[way].heading);
     for (int row = 0; row < UNKNOWN_ROWS; row++)
         print_row(t, row, stream);
     fprintf(stream, "\n\n%.1f s\n", t->seconds);
@@ -68,6 +93,8 @@ static void put_object(cJSON *list, const unknown_object *o)
         cJSON *errors = json_put_object(to, name);
         for (int way = 0; way < UNKNOWN_WAYS; way++)
             json_put_number(errors, words[way].key, o->error[row][way]);
+        for (int way = 0; way < UNKNOWN_WAYS; way++)
+            if (!isnan(o->albedo[row][way])) json_put_number(errors, words[way].albedo_key, o->albedo[row][way]);
     }
     cJSON_AddItemToArray(list, to);
 }

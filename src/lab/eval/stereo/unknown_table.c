@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "base/progress.h"
+#include "lab/eval/metrics/metrics.h"
 #include "lab/eval/metrics/normal_frame.h"
 #include "lab/eval/stereo/rendered_capture.h"
 #include "lab/eval/stereo/stereo_object.h"
@@ -45,7 +46,18 @@ static status choose(const merlin_capture *all, int count, merlin_capture *out)
     return out->picture && out->light ? OK : fail(MERLIN_NO_MEMORY, "no memory for %d pictures", count);
 }
 
-static status solve(const run *r, const merlin_capture *c, unknown_way way, img *normal)
+/* What is compared with the truth; without albedo where a solver's has another meaning. */
+typedef struct solution {
+    img normal, albedo;
+} solution;
+
+static void solution_free(solution *s)
+{
+    img_free(&s->normal);
+    img_free(&s->albedo);
+}
+
+static status solve(const run *r, const merlin_capture *c, unknown_way way, solution *out)
 {
     merlin_params params = merlin_params_default();
     params.views = r->options->views;
@@ -55,7 +67,7 @@ static status solve(const run *r, const merlin_capture *c, unknown_way way, img 
         merlin_surface found;
         status s = pst_solve(c, &how, &found);
         if (s != OK) return s;
-        *normal = found.normal;
+        out->normal = found.normal;
         found.normal = (img){0};
         merlin_surface_free(&found);
         return OK;
@@ -63,24 +75,28 @@ static status solve(const run *r, const merlin_capture *c, unknown_way way, img 
     merlin_maps maps;
     status s = maps_of_capture(r->model, c, &params, way == UNKNOWN_REFINED, &maps);
     if (s != OK) return s;
-    *normal = maps.normal;
-    maps.normal = (img){0};
+    *out = (solution){maps.normal, maps.albedo};
+    maps.normal = maps.albedo = (img){0};
     merlin_maps_free(&maps);
     return OK;
 }
 
 /* A capture that a solver can make nothing of is a result, too. */
-static status measure(run *r, const stereo_object *o, int count, double error[UNKNOWN_WAYS])
+static status measure(run *r, const stereo_object *o, int count, double error[UNKNOWN_WAYS],
+                      double albedo[UNKNOWN_WAYS])
 {
     merlin_capture c;
+    const img *mask = &o->capture.mask;
     status s = choose(&o->capture, count, &c);
     for (int way = 0; way < UNKNOWN_WAYS && s == OK; way++) {
-        img normal = {0};
+        solution found = {0};
         s = r->options->stopped && r->options->stopped() ? fail(MERLIN_STOPPED, "stopped")
-                                                         : solve(r, &c, (unknown_way)way, &normal);
-        if (s == OK) error[way] = normal_mean_angle(&normal, &o->capture, NULL);
+                                                         : solve(r, &c, (unknown_way)way, &found);
+        if (s == OK) error[way] = normal_mean_angle(&found.normal, &o->capture, NULL);
+        if (s == OK && found.albedo.data && o->albedo.data)
+            albedo[way] = EVAL_UNIT * eval_mse_scale_free(&found.albedo, &o->albedo, mask);
         if (s == MERLIN_BAD_INPUT) s = OK;
-        img_free(&normal);
+        solution_free(&found);
         progress_update(&r->bar, ++r->done, o->name);
     }
     free(c.picture);
@@ -91,7 +107,8 @@ static status measure(run *r, const stereo_object *o, int count, double error[UN
 /* Renders an object under distant lights, as seen from afar. */
 static status render(const run *r, size_t index, stereo_object *out)
 {
-    const rendered how = {.size = STEREO_OBJECT_SIDE, .lights = UNKNOWN_LIGHTS, .strata = 2, .exposure = 2};
+    const rendered how = {
+        .size = STEREO_OBJECT_SIDE, .lights = UNKNOWN_LIGHTS, .strata = 2, .exposure = 2, .albedo = &out->albedo};
     scene_object object;
     *out = (stereo_object){.name = ""};
     status s = scene_object_generate(r->options->seed, index, CAMERA_FOV, &object);
@@ -113,9 +130,9 @@ static status measure_object(run *r, const char *path, size_t index, unknown_obj
     out->pictures = o.capture.count;
     for (int row = 0; row < UNKNOWN_ROWS; row++) {
         for (int way = 0; way < UNKNOWN_WAYS; way++)
-            out->error[row][way] = (double)NAN;
+            out->error[row][way] = out->albedo[row][way] = (double)NAN;
         const int count = unknown_row_pictures(out, row);
-        if (count > 0 && s == OK) s = measure(r, &o, count, out->error[row]);
+        if (count > 0 && s == OK) s = measure(r, &o, count, out->error[row], out->albedo[row]);
     }
     stereo_object_free(&o);
     return s == OK || s == MERLIN_STOPPED ? s : fail_in(s, "%s", out->name);

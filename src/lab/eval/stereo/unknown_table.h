@@ -25,7 +25,8 @@ enum { UNKNOWN_LIGHTS = 32, UNKNOWN_RENDERED = 8 };
 typedef struct unknown_object {
     char name[32];
     int pictures;
-    double error[UNKNOWN_ROWS][UNKNOWN_WAYS]; /* degrees; NAN: not measured, or refused */
+    double error[UNKNOWN_ROWS][UNKNOWN_WAYS];  /* degrees; NAN: not measured, or refused */
+    double albedo[UNKNOWN_ROWS][UNKNOWN_WAYS]; /* mean squared, as eval_mse_scale_free times EVAL_UNIT; NAN: unknown */
 } unknown_object;
 
 typedef struct unknown_table {

@@ -107,25 +107,6 @@ const lit_words lit_figure_words[LIT_FIGURES] = {
     [LIT_RELIEF] = {"relief", "relief_error", 100},
 };
 
-static double albedo_free(const img *albedo, const lit_subject *on)
-{
-    double both = 0, own = 0, sum = 0, count = 1e-9;
-    const float *a = albedo->data, *b = on->truth.albedo.data;
-    for (size_t i = 0; i < img_value_count(albedo); i++) {
-        if (on->mask.data[i / 3] == 0) continue;
-        both += (double)a[i] * (double)b[i];
-        own += (double)a[i] * (double)a[i];
-    }
-    const double scale = own > 0 ? both / own : 1;
-    for (size_t i = 0; i < img_value_count(albedo); i++) {
-        if (on->mask.data[i / 3] == 0) continue;
-        double e = scale * (double)a[i] - (double)b[i];
-        sum += e * e;
-        count++;
-    }
-    return EVAL_UNIT * sum / count;
-}
-
 static double relief_error(const img *depth, const lit_subject *on)
 {
     double sum = 0, squares = 0, count = 1e-9;
@@ -144,7 +125,7 @@ void lit_figures_add(const surface *maps, const lit_subject *on, double sum[LIT_
 {
     sum[LIT_ANGLE] += eval_angle(&maps->normal, &on->truth.normal, &on->mask);
     sum[LIT_ALBEDO] += EVAL_UNIT * eval_mse(&maps->albedo, &on->truth.albedo, &on->mask);
-    sum[LIT_ALBEDO_FREE] += albedo_free(&maps->albedo, on);
+    sum[LIT_ALBEDO_FREE] += EVAL_UNIT * eval_mse_scale_free(&maps->albedo, &on->truth.albedo, &on->mask);
     sum[LIT_ROUGHNESS] += EVAL_UNIT * eval_mse(&maps->roughness, &on->truth.roughness, &on->mask);
     sum[LIT_RELIEF] += relief_error(&maps->depth, on);
 }
