@@ -83,6 +83,7 @@ typedef struct merlin_maps {
         float normal, albedo, roughness, depth; /* shares of the object, in [0, 1]: normals that were made unit; values
                                                  * of the others that were clamped to their range */
     } mended;                                   /* zeros except for maps that were read */
+    merlin_warnings *noticed; /* of several photographs: further warnings, about their files; NULL: none */
 } merlin_maps;
 
 void merlin_maps_free(merlin_maps *maps);
@@ -121,7 +122,7 @@ const char *merlin_doubt_code(merlin_doubt doubt);
 /* Describes one doubt for a person: a sentence about these maps, without a full stop at its end, into text as snprintf
  * does. */
 int merlin_doubt_message(const merlin_maps *maps, merlin_doubt doubt, char *text, int size);
-/* Lists all doubts of these maps, each with its code and description. */
+/* Lists all doubts of these maps, each with its code and description, and what was noticed in their files. */
 void merlin_maps_warnings(const merlin_maps *maps, merlin_warnings *out);
 
 /* ---- files ---- */

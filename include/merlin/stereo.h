@@ -51,6 +51,7 @@ typedef struct merlin_capture_files {
                       * object, and merlin_stereo estimates its distance if it is unknown, unless all have z below 0 */
     int unknown_lights;  /* 1: ignore where lights are listed to be */
     int lights_optional; /* 1: a folder without a list of lights is read, too: its lights are unknown */
+    int frames;          /* largest number of frames that are taken from a video, at most 64; 0: 16 */
     int linear;          /* 1: 8-bit pictures are linear, not sRGB, whatever their profiles state */
     float field_of_view; /* horizontal, degrees; 0: unknown */
     float distance;    /* of the object from the camera, in the unit of the lights' positions; 0: unknown. Only for near
@@ -61,9 +62,13 @@ typedef struct merlin_capture_files {
 } merlin_capture_files;
 
 /* Reads a capture: PNG, JPEG, TIFF, EXR or raw pictures, else WebP, HEIC or HDR ones, and their lights. 16-bit pictures
- * are linear unless they state otherwise (a colour profile, a PNG's chunk, EXIF), raw ones always. files NULL: the
- * defaults. */
+ * are linear unless they state otherwise (a colour profile, a PNG's chunk, EXIF), raw ones always. The folder may also be
+ * a video of an object under a lamp that moves, with unknown_lights or lights_optional: its frames whose light differs
+ * most are read. files NULL: the defaults. */
 merlin_status merlin_capture_read(const char *folder, const merlin_capture_files *files, merlin_capture **out);
+/* Reads a capture of these pictures, in this order, under unknown lights; no files beside them are read. */
+merlin_status merlin_capture_read_pictures(const char *const *pictures, size_t count, const merlin_capture_files *files,
+                                           merlin_capture **out);
 
 /* Properties of all pictures that are added from memory. */
 typedef struct merlin_capture_params {

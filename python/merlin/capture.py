@@ -66,24 +66,31 @@ class Capture:
         check("capture_new", ctypes.byref(params), None if cover is None else cover.at, self._owner.at)
 
     @classmethod
-    def read(cls, folder: PathLike, *, lights: Optional[PathLike] = None, mask: Optional[PathLike] = None,
+    def read(cls, source: Union[PathLike, Sequence[PathLike]], *, lights: Optional[PathLike] = None, mask: Optional[PathLike] = None,
              ambient: Optional[PathLike] = None, near: bool = False, unknown: bool = False, linear: bool = False,
-             field_of_view: float = 0.0, distance: float = 0.0, progress: Optional[ProgressCallback] = None,
+             frames: int = 0, field_of_view: float = 0.0, distance: float = 0.0, progress: Optional[ProgressCallback] = None,
              stop: Optional[StopCallback] = None) -> "Capture":
-        """Reads a folder of pictures and the lights they were taken under (docs/captures.md).
+        """Reads a folder of pictures and the lights they were taken under (docs/captures.md), or a list of pictures or a
+        video under lights that are not known (a video wants unknown=True).
 
         lights: lights.txt or an .lp file; None: the folder's. mask, ambient: pictures; None: the folder's, if any.
         near: the list holds positions. unknown: wherever lights are said to be, they are not known. linear: 8-bit
-        pictures are linear. Progress and stop: as of Model.estimate."""
-        name = path_bytes(folder)
+        pictures are linear. frames: of a video so many are taken at most, those whose light differs most; 0: 16.
+        Progress and stop: as of Model.estimate."""
         files = h.CaptureFiles(optional_path(lights), optional_path(mask), optional_path(ambient), int(near),
-                               int(unknown), 0, int(linear), real(field_of_view, "field_of_view"),
-                               real(distance, "distance"))
+                               int(unknown), 0, whole(frames, "frames"), int(linear),
+                               real(field_of_view, "field_of_view"), real(distance, "distance"))
         watch = Watch(progress, stop)
         watch.put(files)
         made = cls.__new__(cls)
         made._owner = Owner(ctypes.c_void_p(), "capture_free")
-        watch.check("capture_read", name, ctypes.byref(files), made._owner.at, path=os.fsdecode(name))
+        if is_path(source):
+            name = path_bytes(source)
+            watch.check("capture_read", name, ctypes.byref(files), made._owner.at, path=os.fsdecode(name))
+        else:
+            names = [path_bytes(one) for one in source]
+            listed = (ctypes.c_char_p * len(names))(*names)
+            watch.check("capture_read_pictures", listed, len(names), ctypes.byref(files), made._owner.at)
         return made
 
     def add(self, picture: Any, light: Optional[Light] = None, *, linear: Optional[bool] = None) -> None:

@@ -168,6 +168,24 @@ def test_a_capture_makes_maps(sphere, model):
         assert not few.maps(model, views=1).refined
 
 
+def test_listed_pictures_are_a_capture(sphere, tmp_path, model):
+    """In any folders, without a list of lights."""
+    _lights, pictures, _normal, inside = sphere
+    paths = [tmp_path / f"{i}.png" for i in range(2)]
+    for path, picture in zip(paths, pictures):
+        merlin.write_image(path, np.repeat(picture[:, :, None], 3, axis=2))
+    merlin.write_image(tmp_path / "mask.png", inside.astype(np.float32))
+    capture = merlin.Capture.read(paths, mask=tmp_path / "mask.png")
+    with pytest.warns(merlin.MerlinWarning):
+        assert capture.maps(model, views=1).photographs == 2
+    with pytest.raises(merlin.BadInputError, match="absent.png"):
+        merlin.Capture.read([paths[0], tmp_path / "absent.png"])
+    with pytest.raises(TypeError):
+        merlin.Capture.read([paths[0], 1])
+    with pytest.raises(merlin.WrongUseError, match="frames"):
+        merlin.Capture.read(tmp_path, unknown=True, frames=65)
+
+
 def chrome(light, size=128, radius=50):
     """A mirror ball with the light's highlight."""
     half = light / np.linalg.norm(light) + [0, 0, 1]

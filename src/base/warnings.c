@@ -24,6 +24,13 @@ void warnings_add(warnings *list, const char *code, const char *format, ...)
         if ((unsigned char)*c < ' ') *c = '?';
 }
 
+void warnings_append(warnings *list, const warnings *more)
+{
+    for (size_t i = 0; i < more->count; i++)
+        warnings_add(list, more->at[i].code, "%s", more->at[i].message);
+    list->more += more->more;
+}
+
 const warning *warnings_find(const warnings *list, const char *code)
 {
     for (size_t i = 0; i < list->count; i++)

@@ -26,6 +26,8 @@ typedef merlin_warnings warnings;
 /* Appends a warning, whose code is a string literal; the message is kept to one line, without a full stop. The most
  * important ones come first. */
 void warnings_add(warnings *list, const char *code, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* Appends all of another list. */
+void warnings_append(warnings *list, const warnings *more);
 /* Returns the first warning of this code, or NULL. */
 const warning *warnings_find(const warnings *list, const char *code);
 /* Returns an array of objects with code and message; NULL if memory ran out. */

@@ -11,6 +11,7 @@
 #include "photo_stereo/maps_from_capture.h"
 #include "photo_stereo/prior_stereo.h"
 #include "stereo/capture/capture.h"
+#include "stereo/doubts/capture_doubts.h"
 
 /* Largest number of pictures that the network sees, evenly chosen, and of its runs on one. */
 enum { SEEN = 32, RUNS = 64 };
@@ -142,6 +143,7 @@ static status estimate(merlin_model *model, seen *s, const merlin_params *params
     while (p.views > 1 && p.views * s->count > RUNS)
         p.views--;
     if (!(p.fov > 0)) p.fov = field_of_view(s->capture);
+    if (!(p.shot.focal_35mm > 0)) p.shot.focal_35mm = s->capture->focal_35mm;
     status st = photograph(s, 0, &first);
     if (st == OK) st = find_object(s, &first, &p.hint, &object);
     if (st == OK) st = estimate_several(model, &first, &object, &p, &further, maps);
@@ -177,6 +179,16 @@ static status refine(const seen *s, const merlin_params *params, merlin_maps *ma
     return st;
 }
 
+/* Notes what the pictures and their files tell against the maps. */
+static status note_pictures(const merlin_capture *c, merlin_maps *maps)
+{
+    maps->noticed = calloc(1, sizeof *maps->noticed);
+    if (!maps->noticed) return fail(MERLIN_NO_MEMORY, "no memory for warnings");
+    status s = pst_doubt_pictures(c, maps->noticed);
+    skipped_warn(&c->skipped, maps->noticed);
+    return s;
+}
+
 merlin_status merlin_maps_from_capture(merlin_model *model, const merlin_capture *capture, const merlin_params *params,
                                        merlin_maps *maps)
 {
@@ -197,6 +209,7 @@ status maps_of_capture(merlin_model *model, const merlin_capture *capture, const
     pictures.compares = refined && model->lights && pictures.count == capture->count;
     s = estimate(model, &pictures, params, maps);
     if (s == OK) doubt_several(&pictures, maps);
+    if (s == OK) s = note_pictures(capture, maps);
     if (s == OK && refined) s = refine(&pictures, params, maps);
     if (s != OK) merlin_maps_free(maps);
     return s;

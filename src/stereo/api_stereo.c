@@ -25,24 +25,49 @@ static status check_camera(float field_of_view, float distance)
     return OK;
 }
 
-merlin_status merlin_capture_read(const char *folder, const merlin_capture_files *files, merlin_capture **out)
+/* What a capture is read from: a folder or a video, or pictures one by one. */
+typedef struct capture_source {
+    const char *folder;
+    const char *const *pictures;
+    size_t count;
+} capture_source;
+
+static status read_from(const capture_source *from, const merlin_capture_files *files, merlin_capture **out)
 {
     static const merlin_capture_files usual = {0};
-    if (out) *out = NULL;
-    status s = api_needs(__func__, folder && out);
     if (!files) files = &usual;
-    if (s == OK) s = check_camera(files->field_of_view, files->distance);
+    status s = check_camera(files->field_of_view, files->distance);
+    if (s == OK && (files->frames < 0 || files->frames > PST_MOST_FRAMES))
+        s = fail(MERLIN_WRONG_USE, "from a video 1 to %d frames are taken, not %d", PST_MOST_FRAMES, files->frames);
     if (s != OK) return s;
     merlin_capture *c = calloc(1, sizeof *c);
     if (!c) return fail(MERLIN_NO_MEMORY, "no memory for a capture");
     const double began = clock_seconds();
-    s = pst_capture_read(folder, files, c);
+    s = from->folder ? pst_capture_read(from->folder, files, c)
+                     : pst_capture_read_pictures(from->pictures, from->count, files, c);
     c->seconds_read = clock_seconds() - began;
     if (s != OK)
         merlin_capture_free(c);
     else
         *out = c;
     return s;
+}
+
+merlin_status merlin_capture_read(const char *folder, const merlin_capture_files *files, merlin_capture **out)
+{
+    if (out) *out = NULL;
+    status s = api_needs(__func__, folder && out);
+    return s == OK ? read_from(&(capture_source){.folder = folder}, files, out) : s;
+}
+
+merlin_status merlin_capture_read_pictures(const char *const *pictures, size_t count, const merlin_capture_files *files,
+                                           merlin_capture **out)
+{
+    if (out) *out = NULL;
+    status s = api_needs(__func__, pictures && count > 0 && out);
+    for (size_t i = 0; i < count && s == OK; i++)
+        s = api_needs(__func__, pictures[i] != NULL);
+    return s == OK ? read_from(&(capture_source){.pictures = pictures, .count = count}, files, out) : s;
 }
 
 static status check_params(const merlin_capture_params *p)

@@ -42,6 +42,9 @@ take_pictures() {
         for (j = 0; j < 128; j++) for (i = 0; i < 128; i++) print ((i - 63.5) ^ 2 + (j - 63.5) ^ 2 < 2500) }' >ball/mask.png
     while read -r name x y z; do reflection "$x" "$y" "$z" >"ball/$name"; done < <(tail -n +2 capture/dome.lp)
     mv capture/dome.lp .
+    "$PICTURES_VIDEO" clip.mp4 2 capture/dome_*.png || echo "skipped: there is no FFmpeg for a video"
+    local light
+    for light in left top right; do ln -s capture/dome_00${#light}.png $light.jpg; done
 }
 
 # ---- what it prints ----
@@ -61,6 +64,7 @@ run() {
         [ -e "$(cut -d ' ' -f 3 <<<"$1")" ] || complain "there are no settings for $1"
         try "$1 --help" # what is wrong with the options is told before the help
         ;;
+    build/release/merlin\ stereo\ clip.mp4*) [ ! -e clip.mp4 ] || try "$1" ;;
     build/release/merlin\ * | build/release/merlin-lab\ * | cat\ *) try "$1" ;;
     *) complain "it prints a command that is not tried here: $1" ;;
     esac

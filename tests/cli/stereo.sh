@@ -43,17 +43,6 @@ echo "whether unknown lights are told is said"
 "$MERLIN" relight disc.merlin --dome 8 -o unknown --quiet || complain "no pictures under a dome"
 succeeds '"lights_unsure":' stereo unknown --method uncalibrated --json
 
-echo "pictures without lights are seen together by a model of any light"
-any=$MERLIN_SOURCE_DIR/models/merlin-any.safetensors
-succeeds '"photographs":8' stereo unknown --model "$any" --size 64 --views 1 --json -o together
-present together/{maps.exr,albedo.png,normal.png,roughness.png,depth.png,mask.png,overview.png,report.json,mesh.glb}
-succeeds '"photographs":8' stereo unknown --method universal --model "$any" --size 64 --views 1 --json --mesh a.obj --html -o together
-present together/viewer.html a.obj
-succeeds relit "$MERLIN" relight together --model "$any" --light 0.7,0.2,-0.4 -o relit
-mkdir two
-cp unknown/dome_000.png unknown/dome_001.png unknown/mask.* two
-succeeds '"code":"not_refined"' stereo two --model "$any" --size 64 --views 1 --json
-refuses 2 'is for flashes' stereo unknown --method universal
 refuses 2 'takes no --lights and no --near' stereo dome --method universal --near
 refuses 2 'ls, robust, near, semi, universal, uncalibrated or auto' stereo dome --method magic
 
@@ -133,7 +122,7 @@ succeeds again stereo dome --method ls -o again
 
 echo "wrong use"
 refuses 2 'no folder' stereo
-refuses 2 'one folder' stereo dome disc.hdr
+refuses 2 'a folder, which comes alone' stereo dome disc.hdr
 refuses 2 '--method' stereo dome --method magic
 refuses 2 '--integrate' stereo dome --integrate magic
 refuses 2 'c.stl' stereo dome --mesh c.stl

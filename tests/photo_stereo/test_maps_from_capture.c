@@ -64,6 +64,29 @@ static bool doubts(const merlin_maps *maps, merlin_doubt which)
     return (maps->doubts & which) != 0;
 }
 
+static void files_are_heeded(void **state)
+{
+    const fixture *f = *state;
+    const merlin_params p = quick();
+    merlin_capture c;
+    merlin_maps maps;
+    merlin_warnings all;
+    picture_sphere(3, 1, &c);
+    memcpy(c.picture[1], c.picture[0], (size_t)c.width * (size_t)c.height * sizeof **c.picture);
+    warnings_add(&c.noticed, "light_still", "the light is still");
+    assert_int_equal(skipped_add(&c.skipped, "a.jxl", "JPEG XL is not read"), OK);
+    c.focal_35mm = 85;
+    if (merlin_maps_from_capture(f->any, &c, &p, &maps) != MERLIN_OK) fail_msg("%s", merlin_error());
+    assert_true(maps.fov > 10 && maps.fov < 25);
+    merlin_maps_warnings(&maps, &all);
+    assert_non_null(warnings_find(&all, "same_pictures"));
+    assert_non_null(warnings_find(&all, "light_still"));
+    assert_non_null(warnings_find(&all, "files_skipped"));
+    merlin_maps_free(&maps);
+    skipped_free(&c.skipped);
+    capture_drop(&c);
+}
+
 static void few_pictures_are_the_networks_alone(void **state)
 {
     const fixture *f = *state;
@@ -193,6 +216,7 @@ static void an_object_is_searched_for_where_all_is_bright(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(files_are_heeded),
         cmocka_unit_test(few_pictures_are_the_networks_alone),
         cmocka_unit_test(one_picture_is_a_photograph),
         cmocka_unit_test(refined_maps_are_whole),

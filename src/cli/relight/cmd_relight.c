@@ -307,8 +307,7 @@ static bool has_lamps(const relight_job *job)
 static void find_doubts(const relight_job *job, const relight_result *result, warnings *doubts)
 {
     merlin_maps_warnings(job->maps, doubts);
-    for (size_t i = 0; i < job->lamps.noticed.count; i++)
-        warnings_add(doubts, job->lamps.noticed.at[i].code, "%s", job->lamps.noticed.at[i].message);
+    warnings_append(doubts, &job->lamps.noticed);
     if (has_lamps(job)) merlin_relighting_warnings(job->model, job->maps, job->how, doubts);
     relit_light_warn_negative(merlin_environment_negative(job->environment), doubts);
     relit_light_warn(&result->seen,

@@ -24,16 +24,18 @@
 #include "command/photo_hint.h"
 #include "command/photos.h"
 #include "command/standard_input.h"
+#include "merlin/frames.h"
 #include "merlin/surface.h"
 
 static const char help[] =
-    "usage: merlin stereo DIR [options]\n"
+    "usage: merlin stereo DIR|VIDEO|PICTURE PICTURE... [options]\n"
     "       merlin stereo PHOTO|MAPS [options]\n"
     "       merlin stereo calibrate --sphere chrome|matte DIR [options]\n\n"
     "Normals, albedo and the surface of an object by photometric stereo: from a folder of pictures, each under one\n"
     "light (lights.txt, an .lp file, the LUCES or the DiLiGenT layout; without such a list the model sees the "
     "pictures\n"
-    "together, and all is written that merlin estimate writes), or from one photograph, relit by the model under 50\n"
+    "together, and all is written that merlin estimate writes), likewise from pictures named one by one or a video under\n"
+    "a lamp that moves, of which the frames are taken whose light differs most; or from one photograph, relit by the model under 50\n"
     "lights. MAPS is a folder made by merlin estimate, or its maps.exr: the photograph is not estimated\n"
     "again. A PHOTO may be -, standard input. calibrate finds light directions from pictures of a ball.\n\n"
     "      --lights FILE    x y z a line, in the order of the pictures' names (9.png before 10.png), or .lp, likewise\n"
@@ -58,6 +60,7 @@ static const char help[] =
     "                       any picture's kind, else what is brighter than a dark background)\n"
     "      --ambient FILE   a picture without the lights, to subtract (default: ambient.* in DIR)\n"
     "      --linear         8-bit pictures hold linear values, not sRGB\n"
+    "      --frames N       of a video at most so many frames, 1 to 64 (default: 16)\n"
     "      --integrate HOW  ls (default) or edges: depth may jump\n"
     "      --mesh FILE      .ply, .obj, .glb or .usda; may be given again (default: mesh.ply, mesh.obj, mesh.glb in "
     "the "
@@ -77,11 +80,13 @@ static const char help[] =
 
 typedef struct request {
     const char *input, *output, *weights;
+    const char *const *pictures; /* count of them, named one by one */
+    int count;
     merlin_capture_files capture;
     merlin_stereo_params solve;
     merlin_params params;
     stereo_files files;
-    bool maps; /* whether input is a folder of merlin estimate */
+    bool maps, video; /* whether input is a folder of merlin estimate, a video */
     bool near, linear, json, quiet, help;
     bool universal; /* no lights are known, and a network sees the pictures together */
 } request;
@@ -137,7 +142,7 @@ static status look_for_maps(const char *folder, bool *alone)
 
 static bool is_capture(const request *r)
 {
-    return file_is_folder(r->input) && !r->maps;
+    return (file_is_folder(r->input) && !r->maps) || r->video || r->count > 1;
 }
 
 static status check_maps(const request *r)
@@ -163,10 +168,12 @@ static status check(request *r)
     const merlin_capture_files *o = &r->capture;
     if (r->universal || r->solve.method == MERLIN_STEREO_UNCALIBRATED) r->capture.unknown_lights = 1;
     r->capture.lights_optional = r->solve.method == MERLIN_STEREO_AUTO;
+    r->video = r->count == 1 && merlin_frames_are(r->input) == 1;
+    if (o->frames && !r->video) return fail(MERLIN_WRONG_USE, "--frames is for a video, and %s is none", r->input);
     if ((o->lights || o->near_lights) && o->unknown_lights)
         return fail(MERLIN_WRONG_USE, "--method %s takes no --lights and no --near: it finds both kinds of lights",
                     r->universal ? "universal" : "uncalibrated");
-    status s = o->lights ? OK : look_for_maps(r->input, &r->maps);
+    status s = o->lights || r->count > 1 ? OK : look_for_maps(r->input, &r->maps);
     if (s != OK) return s;
     bool is_one_photo = file_exists(r->input) && !is_capture(r);
     if (is_one_photo &&
@@ -189,6 +196,24 @@ static status check(request *r)
     return photo_check_hint(&r->params.hint, o->mask, false);
 }
 
+/* Takes a folder, a video or a photograph, or several pictures of one object. */
+static status take_inputs(request *r, int count, char **names)
+{
+    r->count = count;
+    r->pictures = (const char *const *)names;
+    if (count == 1) return photo_take_input(names, r->output, &r->input);
+    r->input = names[0];
+    for (int i = 0; i < count; i++) {
+        const char *kind = file_is_folder(names[i])            ? "a folder"
+                           : merlin_frames_are(names[i]) == 1   ? "a video"
+                           : strcmp(names[i], "-") == 0         ? "standard input"
+                                                                : NULL;
+        if (kind) return fail(MERLIN_WRONG_USE, "%s is %s, which comes alone", names[i], kind);
+        if (!file_exists(names[i])) return fail(MERLIN_BAD_INPUT, "there is no picture %s", names[i]);
+    }
+    return OK;
+}
+
 static status parse(int *argc, char ***argv, request *r)
 {
     const cli_option options[] = {
@@ -202,6 +227,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"box", .take = photo_take_box, .into = &r->params.hint},
         {"ambient", .text = &r->capture.ambient},
         {"linear", .flag = &r->linear},
+        {"frames", .integer = &r->capture.frames, .low = 1, .high = 64},
         {"integrate", .take = take_integration, .into = &r->solve},
         {"mesh", .take = mesh_take_name, .into = &r->files.mesh, .many = true},
         {"html", .flag = &r->files.page},
@@ -218,10 +244,9 @@ static status parse(int *argc, char ***argv, request *r)
     status s = cli_read_options(argc, argv, options);
     if (s != OK || r->help) return s;
     if (*argc == 0) return fail(MERLIN_WRONG_USE, "no folder of pictures and no photograph given");
-    if (*argc > 1) return fail(MERLIN_WRONG_USE, "one folder or photograph at a time, not also %s", (*argv)[1]);
     r->capture.near_lights = r->near;
     r->capture.linear = r->linear;
-    s = photo_take_input(*argv, r->output, &r->input);
+    s = take_inputs(r, *argc, *argv);
     return s == OK ? check(r) : s;
 }
 
@@ -339,12 +364,18 @@ static bool sees_together(const request *r, const merlin_capture *capture)
     return r->universal || (unknown && r->solve.method == MERLIN_STEREO_AUTO);
 }
 
+static status read_capture(const request *r, merlin_capture **out)
+{
+    return r->count > 1 ? merlin_capture_read_pictures(r->pictures, (size_t)r->count, &r->capture, out)
+                        : merlin_capture_read(r->input, &r->capture, out);
+}
+
 static status solve_and_write(request *r, const stereo_files *files, stage_bar *bar, const watch *shown)
 {
     const double began = clock_seconds();
     merlin_capture *capture = NULL;
     merlin_surface surface = {0};
-    status s = is_capture(r) ? merlin_capture_read(r->input, &r->capture, &capture) : OK;
+    status s = is_capture(r) ? read_capture(r, &capture) : OK;
     if (s == OK && sees_together(r, capture)) {
         s = see_together(r, capture, files, bar, shown, began);
     } else if (s == OK) {

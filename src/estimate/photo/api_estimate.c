@@ -14,6 +14,7 @@ void merlin_maps_free(merlin_maps *maps)
                               &maps->mask,   &maps->photo,  &maps->reconstruction};
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
         merlin_image_free(images[i]);
+    free(maps->noticed);
     *maps = (merlin_maps){0};
 }
 

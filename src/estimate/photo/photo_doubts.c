@@ -328,6 +328,7 @@ void merlin_maps_warnings(const merlin_maps *maps, merlin_warnings *out)
         merlin_doubt_message(maps, names[i].doubt, message, sizeof message);
         warnings_add(out, names[i].code, "%s", message);
     }
+    if (maps && out && maps->noticed) warnings_append(out, maps->noticed);
 }
 
 merlin_status merlin_shot_read(const char *path, merlin_shot *out)

@@ -50,6 +50,7 @@ struct merlin_capture {
     bool mask_found;       /* whether the reader found it by brightness */
     img normal_true;       /* 3 channels, or empty: ground truth if the layout has one */
     img depth_true;        /* 1 channel, or empty */
+    float focal_35mm;      /* that of the first picture's EXIF, as in merlin_shot; 0: unknown */
     float field_of_view;   /* field of view for pictures to come, as in merlin_capture_params */
     double seconds_read;   /* for reading the folder */
 };
@@ -57,9 +58,12 @@ struct merlin_capture {
 /* Reads the pictures of a folder, their lights and the mask. The lights of an .lp file are then relative to the object
  * (about_object). options NULL: defaults. */
 status pst_capture_read(const char *folder, const merlin_capture_files *options, merlin_capture *out);
+/* Reads these pictures, in this order, under unknown lights. */
+status pst_capture_read_pictures(const char *const *pictures, size_t count, const merlin_capture_files *options,
+                                 merlin_capture *out);
 /* Tells whether a folder has the layout of an object of LUCES or DiLiGenT. */
 bool pst_is_of_data_set(const char *folder);
-enum { PST_MOST_PICTURES = 4096 };
+enum { PST_MOST_PICTURES = 4096, PST_MOST_FRAMES = 64 }; /* the latter of a video */
 /* Allocates count lights of intensity 1, names and pictures, 1 to PST_MOST_PICTURES; names and pictures are NULL. */
 status pst_capture_reserve(merlin_capture *c, size_t count);
 /* Copies the name of picture i. */

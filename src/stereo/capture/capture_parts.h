@@ -42,19 +42,24 @@ status pst_read_strengths(const char *folder, const char *lights, bool listed, m
 status pst_read_light_list(const char *folder, const char *lights, const merlin_capture_files *options,
                            merlin_capture *c);
 
+/* Reads those frames of a video whose light differs most, with unknown lights and the mask. */
+status pst_read_video(const char *path, const merlin_capture_files *options, merlin_capture *c);
+
 status pst_read_plain(const char *folder, const merlin_capture_files *options, merlin_capture *c);
 status pst_read_luces(const char *folder, merlin_capture *c);
 status pst_read_luces_truth(const char *folder, merlin_capture *c);
 status pst_read_diligent(const char *folder, merlin_capture *c);
 status pst_read_diligent_truth(const char *folder, merlin_capture *c);
 
-/* Reads the pictures named in c->name and subtracts the ambient one. If a layout has set a width and height, the
+/* Reads the pictures named in c->name, in this folder or, if that is NULL, anywhere, and subtracts the ambient one. If a layout has set a width and height, the
  * pictures must have them. */
 status pst_read_pictures(const char *folder, const merlin_capture_files *options, merlin_capture *c);
 /* Share of full scale: pixels that no light raises above it are background, or never lit. */
 #define PST_BLACK 0.004f
 
-/* Reads the mask from a file, or finds it. */
+/* Reads the mask from this file, or finds it if that is NULL; from: the folder or video of the pictures. */
+status pst_take_mask(const char *path, const char *from, merlin_capture *c);
+/* Reads the folder's mask, or finds it; then lists the files that were skipped. */
 status pst_read_mask(const char *folder, const merlin_capture_files *options, merlin_capture *c);
 /* Finds a file: the one requested; else `usual` in the folder; else its first one with this ending, and then *found is
  * the number of these (otherwise 0). *path is NULL if there is none. Free it. */

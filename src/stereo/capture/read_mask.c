@@ -64,7 +64,7 @@ static status check_mask(const char *path, merlin_capture *c)
     return OK;
 }
 
-static status find_mask(const char *folder, merlin_capture *c)
+static status find_mask(const char *from, merlin_capture *c)
 {
     status s = pst_capture_find_mask(c);
     size_t pixels = (size_t)c->width * (size_t)c->height;
@@ -74,25 +74,26 @@ static status find_mask(const char *folder, merlin_capture *c)
     if (s != OK) return s;
     if (!inside)
         return fail(MERLIN_BAD_INPUT, "the pictures of %s are black: nothing is above %g %% of full scale; give a mask",
-                    folder, (double)(100 * PST_BLACK));
+                    from, (double)(100 * PST_BLACK));
     if (holds_a_triangle(&c->mask)) return OK;
     return fail(MERLIN_BAD_INPUT,
-                "no object is to be found in %s: %zu pixel%s stand%s out, too few for a surface; give a mask", folder,
+                "no object is to be found in %s: %zu pixel%s stand%s out, too few for a surface; give a mask", from,
                 inside, inside == 1 ? "" : "s", inside == 1 ? "s" : "");
+}
+
+status pst_take_mask(const char *path, const char *from, merlin_capture *c)
+{
+    c->mask_found = !path;
+    if (!path) return find_mask(from, c);
+    status s = img_read_mask(path, &c->mask);
+    return s == OK ? check_mask(path, c) : s;
 }
 
 status pst_read_mask(const char *folder, const merlin_capture_files *options, merlin_capture *c)
 {
     char *path;
     status s = pst_find_mask(folder, options->mask, &path);
-    if (s != OK) return s;
-    if (path) {
-        s = img_read_mask(path, &c->mask);
-        if (s == OK) s = check_mask(path, c);
-    } else {
-        s = find_mask(folder, c);
-        c->mask_found = true;
-    }
+    if (s == OK) s = pst_take_mask(path, folder, c);
     if (s == OK) s = pst_list_skipped(folder, path, options->ambient, c);
     free(path);
     return s;

@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: MIT */
+#include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "image/metadata/exif.h"
 #include "image/read/read.h"
 #include "stereo/capture/capture_parts.h"
 
@@ -37,12 +40,28 @@ typedef struct reading {
     merlin_capture *into;
 } reading;
 
+/* Composes a picture's path, malloc'ed; NULL without memory. */
+static char *path_of(const reading *r, const char *name)
+{
+    return r->folder ? file_join(r->folder, name) : strdup(name);
+}
+
+/* Writes a picture's path for a message. */
+static const char *told(const reading *r, const char *name, char text[PATH_MAX])
+{
+    snprintf(text, PATH_MAX, "%s%s%s", r->folder ? r->folder : "", r->folder ? "/" : "", name);
+    return text;
+}
+
 /* Determines how the first picture is read; others of its size are read in the same way. */
 static status inspect_first(const reading *r, merlin_capture *c)
 {
-    char *path = file_join(r->folder, c->name[0]);
+    char *path = path_of(r, c->name[0]);
     img_facts facts = {1, 1};
+    exif_facts shot = {0};
     status s = path ? img_look(path, &facts) : fail(MERLIN_NO_MEMORY, "no memory for a file name");
+    if (s == OK) s = exif_read(path, &shot);
+    c->focal_35mm = shot.focal_35mm;
     c->reduced = facts.reduced;
     c->frames = facts.frames;
     free(path);
@@ -51,7 +70,7 @@ static status inspect_first(const reading *r, merlin_capture *c)
 
 static status read_one(const reading *r, const char *name, img *out, int *bits)
 {
-    char *path = file_join(r->folder, name);
+    char *path = path_of(r, name);
     if (!path) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
     status s = img_read_samples(path, r->decode, out, bits);
     free(path);
@@ -66,14 +85,15 @@ static const char *kind_of(int bits)
 
 static status check_shape(const reading *r, const merlin_capture *c, const char *name, const img *picture, int bits)
 {
+    char path[PATH_MAX];
     if ((bits == 32) != (r->bits == 32))
-        return fail(MERLIN_BAD_INPUT, "%s/%s has %s, but %s has %s; all pictures must be of one kind", r->folder, name,
+        return fail(MERLIN_BAD_INPUT, "%s has %s, but %s has %s; all pictures must be of one kind", told(r, name, path),
                     kind_of(bits), c->name[0], kind_of(r->bits));
     if (picture->width != c->width || picture->height != c->height)
-        return fail(MERLIN_BAD_INPUT, "%s/%s is %d x %d pixels, but %s is %d x %d; all pictures must have one size",
-                    r->folder, name, picture->width, picture->height, c->name[0], c->width, c->height);
+        return fail(MERLIN_BAD_INPUT, "%s is %d x %d pixels, but %s is %d x %d; all pictures must have one size",
+                    told(r, name, path), picture->width, picture->height, c->name[0], c->width, c->height);
     if (picture->channels != c->channels)
-        return fail(MERLIN_BAD_INPUT, "%s/%s is %s, but %s is %s; all pictures must be of one kind", r->folder, name,
+        return fail(MERLIN_BAD_INPUT, "%s is %s, but %s is %s; all pictures must be of one kind", told(r, name, path),
                     picture->channels == 1 ? "grey" : "in colour", c->name[0], c->channels == 1 ? "grey" : "in colour");
     return OK;
 }
@@ -164,11 +184,12 @@ static status measure_scale(reading *r)
 static status read_first_shape(reading *r, merlin_capture *c)
 {
     const img *first = r->first;
+    char path[PATH_MAX];
     status s = read_one(r, c->name[0], r->first, &r->bits);
     if (s != OK) return s;
     if (c->width && (c->width != first->width || c->height != first->height))
-        s = fail(MERLIN_BAD_INPUT, "%s/%s is %d x %d pixels, but the lights' file says %d x %d", r->folder, c->name[0],
-                 first->width, first->height, c->width, c->height);
+        s = fail(MERLIN_BAD_INPUT, "%s is %d x %d pixels, but the lights' file says %d x %d",
+                 told(r, c->name[0], path), first->width, first->height, c->width, c->height);
     if (s == OK) s = inspect_first(r, c);
     c->width = first->width;
     c->height = first->height;
@@ -180,7 +201,7 @@ static status read_ambient(reading *r, const char *asked, const merlin_capture *
 {
     char *path = asked ? strdup(asked) : NULL;
     if (asked && !path) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
-    status s = asked ? OK : pst_find_ambient(r->folder, c->name[0], &path);
+    status s = asked || !r->folder ? OK : pst_find_ambient(r->folder, c->name[0], &path);
     int bits;
     if (path) {
         s = img_read_samples(path, r->decode, &r->ambient, &bits);

@@ -184,7 +184,7 @@ static void check_mask(const merlin_capture *c, warnings *out)
 
 /* ---- warnings of solvers and readers ---- */
 
-static void report_noticed(const merlin_capture *c, const merlin_surface *s, warnings *out)
+static void report_reading(const merlin_capture *c, warnings *out)
 {
     if (c->reduced > 1)
         warnings_add(out, "reduced_size",
@@ -193,8 +193,11 @@ static void report_noticed(const merlin_capture *c, const merlin_surface *s, war
     if (c->frames > 1)
         warnings_add(out, "first_frame", "%s is an animation, of whose %d pictures the first alone was read",
                      c->name[0], c->frames);
-    for (size_t i = 0; i < c->noticed.count; i++)
-        warnings_add(out, c->noticed.at[i].code, "%s", c->noticed.at[i].message);
+    warnings_append(out, &c->noticed);
+}
+
+static void report_solution(const merlin_capture *c, const merlin_surface *s, warnings *out)
+{
     if (c->about_object)
         warnings_add(out, "lights_have_places",
                      "the lights are listed as places about the object and were taken for directions: --near heeds "
@@ -231,6 +234,15 @@ status pst_doubts(const merlin_capture *c, const merlin_surface *s, warnings *ou
     if (result == OK) result = pst_check_copies(c, out);
     check_exposure(c, out);
     check_mask(c, out);
-    report_noticed(c, s, out);
+    report_reading(c, out);
+    report_solution(c, s, out);
     return result;
+}
+
+status pst_doubt_pictures(const merlin_capture *c, warnings *out)
+{
+    status s = pst_check_copies(c, out);
+    if (!c->mask_found && c->mask.data) check_mask(c, out);
+    report_reading(c, out);
+    return s;
 }

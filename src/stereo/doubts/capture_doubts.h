@@ -14,6 +14,9 @@
  * lights_alike, lights_behind_camera, other_unit, same_pictures, burnt_out, lights_in_order, strengths_unsure,
  * distance_unsure and lights_unsure, if they apply. */
 status pst_doubts(const merlin_capture *c, const merlin_surface *s, warnings *out);
+/* Adds what tells against the pictures, their mask and their files whatever is made of them: same_pictures,
+ * mask_inverted, reduced_size, first_frame and what the reader noticed. */
+status pst_doubt_pictures(const merlin_capture *c, warnings *out);
 /* Adds only same_pictures, if it applies. */
 status pst_check_copies(const merlin_capture *c, warnings *out);
 
