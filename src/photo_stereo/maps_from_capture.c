@@ -8,6 +8,7 @@
 #include "base/api_needs.h"
 #include "estimate/photo/estimate.h"
 #include "estimate/photo/model_pair.h"
+#include "photo_stereo/align_pictures.h"
 #include "photo_stereo/maps_from_capture.h"
 #include "photo_stereo/prior_stereo.h"
 #include "stereo/capture/capture.h"
@@ -179,12 +180,26 @@ static status refine(const seen *s, const merlin_params *params, merlin_maps *ma
     return st;
 }
 
+static const char *name_of(const merlin_capture *c, int picture)
+{
+    return c->name && c->name[picture] ? c->name[picture] : "one";
+}
+
+static void note_shifts(const merlin_capture *c, const picture_shifts *shifts, warnings *out)
+{
+    if (shifts->moved)
+        warnings_add(out, "pictures_moved",
+                     "the camera moved: %d of %d pictures were shifted back, %s most, by %d pixels; keep it still",
+                     shifts->moved, c->count, name_of(c, shifts->which), shifts->most);
+}
+
 /* Notes what the pictures and their files tell against the maps. */
-static status note_pictures(const merlin_capture *c, merlin_maps *maps)
+static status note_pictures(const merlin_capture *c, const picture_shifts *shifts, merlin_maps *maps)
 {
     maps->noticed = calloc(1, sizeof *maps->noticed);
     if (!maps->noticed) return fail(MERLIN_NO_MEMORY, "no memory for warnings");
     status s = pst_doubt_pictures(c, maps->noticed);
+    note_shifts(c, shifts, maps->noticed);
     skipped_warn(&c->skipped, maps->noticed);
     return s;
 }
@@ -198,19 +213,31 @@ merlin_status merlin_maps_from_capture(merlin_model *model, const merlin_capture
     return s == OK ? maps_of_capture(model, capture, params ? params : &usual, true, maps) : s;
 }
 
-status maps_of_capture(merlin_model *model, const merlin_capture *capture, const merlin_params *params, bool refined,
-                       merlin_maps *maps)
+/* Makes maps of pictures that lie alike. */
+static status maps_of_aligned(merlin_model *model, const merlin_capture *capture, const merlin_params *params,
+                              bool refined, merlin_maps *maps)
 {
-    *maps = (merlin_maps){0};
-    status s = check(capture);
-    if (s != OK) return s;
     seen pictures = choose(capture);
     /* a start from lights of which some are unknown would be a wrong one */
     pictures.compares = refined && model->lights && pictures.count == capture->count;
-    s = estimate(model, &pictures, params, maps);
+    status s = estimate(model, &pictures, params, maps);
     if (s == OK) doubt_several(&pictures, maps);
-    if (s == OK) s = note_pictures(capture, maps);
     if (s == OK && refined) s = refine(&pictures, params, maps);
+    return s;
+}
+
+status maps_of_capture(merlin_model *model, const merlin_capture *capture, const merlin_params *params, bool refined,
+                       merlin_maps *maps)
+{
+    merlin_capture aligned = {0};
+    picture_shifts shifts;
+    *maps = (merlin_maps){0};
+    status s = check(capture);
+    if (s != OK) return s;
+    s = align_pictures(capture, &aligned, &shifts);
+    if (s == OK) s = maps_of_aligned(model, &aligned, params, refined, maps);
+    if (s == OK) s = note_pictures(capture, &shifts, maps);
+    align_pictures_free(capture, &aligned);
     if (s != OK) merlin_maps_free(maps);
     return s;
 }

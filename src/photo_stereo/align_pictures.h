@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: MIT */
+/* Aligns pictures of an object by one camera that moved a little between them, each under another light.
+ *
+ *     merlin_capture aligned;
+ *     picture_shifts shifts;
+ *     status s = align_pictures(&capture, &aligned, &shifts);
+ *     ... aligned instead of capture ...
+ *     align_pictures_free(&capture, &aligned);
+ */
+#ifndef MERLIN_PHOTO_STEREO_ALIGN_PICTURES_H
+#define MERLIN_PHOTO_STEREO_ALIGN_PICTURES_H
+
+#include "stereo/capture/capture.h"
+
+/* Shifts of a capture's pictures by which they fit the first one. */
+typedef struct picture_shifts {
+    int moved;       /* number of pictures that have one */
+    int most, which; /* largest shift, in pixels, and the picture that has it */
+} picture_shifts;
+
+/* Makes a capture whose pictures lie as the first one does: it shares with the original all that is not a picture that
+ * had to be moved. What comes from beyond the edges is black. Edges are compared, as light changes all else: of each
+ * picture with those of all others, within the mask and a margin, or everywhere without one. A shift is at most a
+ * twentieth of the longer side, and none unless another is clearly better. */
+status align_pictures(const merlin_capture *c, merlin_capture *out, picture_shifts *shifts);
+void align_pictures_free(const merlin_capture *c, merlin_capture *aligned);
+
+#endif

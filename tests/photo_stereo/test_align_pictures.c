@@ -1,0 +1,114 @@
+/* SPDX-License-Identifier: MIT */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/status.h"
+
+#include <cmocka.h> /* last, as cmocka defines a macro named fail */
+
+#include "photo_stereo/align_pictures.h"
+#include "relief.h"
+
+enum { SIZE = 96, LIGHTS = 6 };
+static const int dx[LIGHTS] = {0, 3, -4, 0, 2, 0}, dy[LIGHTS] = {0, -2, 1, 5, 2, 0};
+
+/* Moves a picture's content to the right and down. */
+static void move(merlin_capture *c, int k, int x, int y)
+{
+    const size_t channels = (size_t)c->channels, values = (size_t)SIZE * SIZE * channels;
+    uint16_t *to = calloc(values, sizeof *to);
+    assert_non_null(to);
+    for (int j = 0; j < SIZE; j++)
+        for (int i = 0; i < SIZE; i++)
+            if (i - x >= 0 && i - x < SIZE && j - y >= 0 && j - y < SIZE)
+                memcpy(to + ((size_t)j * SIZE + (size_t)i) * channels,
+                       c->picture[k] + ((size_t)(j - y) * SIZE + (size_t)(i - x)) * channels, channels * sizeof *to);
+    memcpy(c->picture[k], to, values * sizeof *to);
+    free(to);
+}
+
+static void make(int channels, merlin_capture *c)
+{
+    const relief sphere = {.size = SIZE, .lights = LIGHTS, .channels = channels, .exposure = 1.5f};
+    relief_capture(&sphere, c);
+    /* painted, as few real objects are plain */
+    for (int k = 0; k < LIGHTS; k++)
+        for (int i = 0; i < SIZE * SIZE * channels; i++)
+            if ((i / channels % SIZE / 7 + i / channels / SIZE / 9) % 2)
+                c->picture[k][i] = (uint16_t)(c->picture[k][i] / 2);
+}
+
+static void still_pictures_stay(void **state)
+{
+    (void)state;
+    merlin_capture c, aligned;
+    picture_shifts shifts;
+    make(3, &c);
+    assert_int_equal(align_pictures(&c, &aligned, &shifts), OK);
+    assert_int_equal(shifts.moved, 0);
+    for (int k = 0; k < LIGHTS; k++)
+        assert_ptr_equal(aligned.picture[k], c.picture[k]);
+    align_pictures_free(&c, &aligned);
+    capture_drop(&c);
+}
+
+static void moved_pictures_come_back(int channels, bool masked)
+{
+    merlin_capture c, still, aligned;
+    picture_shifts shifts;
+    make(channels, &c);
+    make(channels, &still);
+    for (int k = 0; k < LIGHTS; k++)
+        move(&c, k, dx[k], dy[k]);
+    img mask = c.mask;
+    if (!masked) c.mask = (img){0};
+    assert_int_equal(align_pictures(&c, &aligned, &shifts), OK);
+    assert_int_equal(shifts.moved, 4);
+    assert_int_equal(shifts.which, 3);
+    assert_int_equal(shifts.most, 5);
+    for (int k = 0; k < LIGHTS; k++)
+        for (int j = 8; j < SIZE - 8; j++)
+            assert_memory_equal(aligned.picture[k] + (size_t)(j * SIZE + 8) * (size_t)channels,
+                                still.picture[k] + (size_t)(j * SIZE + 8) * (size_t)channels,
+                                sizeof(uint16_t) * (SIZE - 16) * (size_t)channels);
+    align_pictures_free(&c, &aligned);
+    c.mask = mask;
+    capture_drop(&c);
+    capture_drop(&still);
+}
+
+static void what_moved_comes_back(void **state)
+{
+    (void)state;
+    moved_pictures_come_back(3, true);
+    moved_pictures_come_back(1, false);
+}
+
+static void one_picture_has_nothing_to_fit(void **state)
+{
+    (void)state;
+    merlin_capture c, aligned;
+    picture_shifts shifts;
+    make(1, &c);
+    const int count = c.count;
+    c.count = 1;
+    assert_int_equal(align_pictures(&c, &aligned, &shifts), OK);
+    assert_ptr_equal(aligned.picture[0], c.picture[0]);
+    align_pictures_free(&c, &aligned);
+    c.count = count;
+    capture_drop(&c);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(still_pictures_stay),
+        cmocka_unit_test(what_moved_comes_back),
+        cmocka_unit_test(one_picture_has_nothing_to_fit),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
