@@ -39,6 +39,10 @@ typedef struct merlin_found_light {
 enum { MERLIN_LIGHT_WORDS = 128 };
 int merlin_light_words(const merlin_found_light *light, char *text, int size);
 
+/* Describes where a lamp is as seen from the camera, such as "a lamp from the upper left, 40 degrees aside". direction:
+ * toward it; text and size as above. */
+int merlin_lamp_words(const float direction[3], char *text, int size);
+
 typedef enum merlin_mask_source { MERLIN_MASK_GIVEN, MERLIN_MASK_FOUND } merlin_mask_source;
 
 typedef struct merlin_timing {
@@ -76,6 +80,8 @@ typedef struct merlin_maps {
                       * surface is near (0, 0, -1), with the square around it as a frame 60 degrees wide */
     int photographs; /* number of photographs that they were made from together; 0 or 1: one */
     int refined; /* 1: photometric stereo from several photographs made the normals, and the depth agrees with these */
+    float further_light[3]; /* of several photographs: unit vector toward the lamp under which a further one would tell
+                             * most; zeros: unknown */
     float fov;   /* horizontal field of view of the crop in degrees, by the lens; 0: unknown, taken to be 60 */
     float slant[2]; /* direction from the lens to the crop's middle, as sines to the right and upwards; the maps' space
                      * is that of a camera that looks at it */

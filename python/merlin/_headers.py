@@ -63,7 +63,7 @@ Maps = _struct("maps", [(name, Image) for name in MAP_NAMES] + [
     ("has_environment", c_int), ("environment", floats9x3), ("light", FoundLight), ("mask_confidence", c_float),
     ("model", c_char * 64), ("timing", Timing), ("doubts", c_uint), ("light_elsewhere", c_float), ("reduced", c_int),
     ("frames", c_int), ("captured", c_int), ("photographs", c_int), ("refined", c_int),
-    ("fov", c_float), ("slant", c_float * 2), ("mended", Mended), ("noticed", POINTER(Warnings))])
+    ("further_light", floats3), ("fov", c_float), ("slant", c_float * 2), ("mended", Mended), ("noticed", POINTER(Warnings))])
 DOUBTS = (
     "NO_OBJECT", "BURNT_OUT", "OBJECT_UNSURE", "LIGHT_ELSEWHERE", "NO_FLASH", "LIGHT_BEHIND", "HOLLOW", "DRAWING",
     "LENS_NARROW", "LENS_WIDE", "DARK", "OBJECT_CUT", "OBJECT_SMALL", "GREY", "REDUCED", "FIRST_FRAME",
@@ -263,6 +263,7 @@ FUNCTIONS: Dict[str, Tuple[Any, List[Any]]] = {
     "doubt_code": (c_char_p, [c_int]),
     "doubt_message": (c_int, [_at(Maps), c_int, c_char_p, c_int]),
     "light_words": (c_int, [_at(FoundLight), c_char_p, c_int]),
+    "lamp_words": (c_int, [_light3, c_char_p, c_int]),
     "maps_warnings": (None, [_at(Maps), _at(Warnings)]),
     "maps_write": (c_int, [_handle, _at(Maps), _at(WriteParams), c_char_p]),
     "maps_report": (c_int, [_at(Maps), POINTER(c_void_p)]),

@@ -156,6 +156,12 @@ class Maps:
         return bool(self._struct.refined)
 
     @property
+    def further_light(self) -> Optional[Tuple[float, float, float]]:
+        """Of several photographs: toward the lamp under which a further one would tell most; else None."""
+        way = tuple(self._struct.further_light)
+        return way if any(way) else None
+
+    @property
     def reduced(self) -> int:
         """So many of the file's pixels a side became one: 0 or 1 for most."""
         return self._struct.reduced

@@ -9,6 +9,7 @@
 #include "estimate/photo/estimate.h"
 #include "estimate/photo/model_pair.h"
 #include "photo_stereo/align_pictures.h"
+#include "photo_stereo/further_light.h"
 #include "photo_stereo/maps_from_capture.h"
 #include "photo_stereo/prior_stereo.h"
 #include "stereo/capture/capture.h"
@@ -162,6 +163,15 @@ static void doubt_several(const seen *s, merlin_maps *maps)
     maps->doubts |= MERLIN_DOUBT_NOT_REFINED;
 }
 
+/* Advises which light to add, by those that a network sees. */
+static void advise(const seen *s, merlin_maps *maps)
+{
+    vec3 light[SEEN];
+    for (int i = 0; i < s->count; i++)
+        light[i] = vec3_of((s->compares ? s->compared : s->lights)[i] + MODEL_LIGHTS_LAMP);
+    if (s->count > 1) vec3_put(further_light(light, s->count), maps->further_light);
+}
+
 static status refine(const seen *s, const merlin_params *params, merlin_maps *maps)
 {
     const size_t count = (size_t)s->capture->count;
@@ -222,6 +232,7 @@ static status maps_of_aligned(merlin_model *model, const merlin_capture *capture
     pictures.compares = refined && model->lights && pictures.count == capture->count;
     status s = estimate(model, &pictures, params, maps);
     if (s == OK) doubt_several(&pictures, maps);
+    if (s == OK) advise(&pictures, maps);
     if (s == OK && refined) s = refine(&pictures, params, maps);
     return s;
 }

@@ -118,6 +118,19 @@ fetches "$relit" relit.png got
 cmp -s got relit/relit.png || complain "a surface relit is another than merlin relight's"
 fetches "$solid" mesh.glb got
 cmp -s got surface/mesh.glb || complain "the mesh is another than merlin stereo's"
+"$MERLIN" stereo dome --method universal -o together -q || complain "no maps of pictures without lights"
+together=$(submit stereo "${pictures[@]}" -F mask=@dome/mask.webp)
+told "$together" | grep -q '"state":"done".*"photographs":12.*"refined":true' || complain "stereo without lights: $(told "$together" | head -c 900)"
+for name in maps.exr normal.png albedo.png mesh.glb; do
+    fetches "$together" $name got
+    cmp -s got together/$name || complain "$name of pictures without lights is another than merlin stereo's"
+done
+fetches "$together" viewer.html got
+two=$(submit stereo "${pictures[@]:0:4}" -F size=64 -F views=1)
+told "$two" | grep -q '"state":"done".*"photographs":2' || complain "two pictures without lights: $(told "$two" | head -c 900)"
+asks 400 'views is for a photo, or pictures without lights' "$site/v1/stereo" "${pictures[@]}" -F lights=@dome/dome.lp -F views=1
+asks 400 'method universal takes no lights' "$site/v1/stereo" "${pictures[@]}" -F lights=@dome/dome.lp -F method=universal
+asks 400 'is for pictures, not for a photo' "$site/v1/stereo" -F photo=@"$demo" -F method=universal
 "$MERLIN" stereo "$demo" -o relit_surface -q || complain "no surface of a photograph"
 single=$(submit stereo -F photo=@"$demo")
 told "$single" | grep -q '"state":"done"' || complain "stereo of a photograph: $(told "$single" | head -c 500)"
@@ -126,7 +139,7 @@ cmp -s got relit_surface/normal.png || complain "stereo of a photograph is anoth
 asks 400 'stereo of a photo knows no field' "$site/v1/stereo" -F photo=@"$demo" -F lights=@dome/dome.lp
 asks 400 'has the methods auto, near and uncalibrated' "$site/v1/stereo" -F photo=@"$demo" -F method=ls
 asks 400 'takes no lights and no near' "$site/v1/stereo" "${pictures[@]}" -F lights=@dome/dome.lp -F method=uncalibrated
-asks 400 'stereo wants 3 pictures or more, not 2' "$site/v1/stereo" "${pictures[@]:0:4}"
+asks 400 'stereo wants 3 pictures or more, not 2' "$site/v1/stereo" "${pictures[@]:0:4}" -F lights=@dome/dome.lp
 asks 400 'filenames.txt, sent as pictures, has no name of a picture' "$site/v1/stereo" "${pictures[@]}" -F "pictures=@dome/dome.lp;filename=filenames.txt"
 cp "$demo" secret.png
 sed "s|^[^ ]*\.[a-z]* |$PWD/secret.png |" dome/dome.lp >elsewhere.lp

@@ -27,6 +27,8 @@ present together/viewer.html a.obj
 succeeds relit "$MERLIN" relight together --model "$any" --light 0.7,0.2,-0.4 -o relit
 cp dome/dome_000.png dome/dome_001.png dome/mask.* two
 succeeds '"photographs":2' stereo two --json
+grep -q '"further_light":{"words":"a lamp ' stdout || complain "it does not say which light tells most: $(cat stdout)"
+succeeds 'next, a lamp .* tells most$' stereo two
 refuses 2 'is for flashes' "$MERLIN" stereo folder --method universal --model merlin-point
 
 echo "what is wrong with the files is told"

@@ -6,7 +6,7 @@ import { byId, bytes, take_drops } from "./parts.js";
 let limits = { bytes: Infinity, files: Infinity };
 const hints = {
     estimate: ["Drop photographs here, or choose them", "Best by the camera’s own flash, the object in the middle"],
-    stereo: ["Drop all pictures of the object here, or choose them", "One camera, one light at a time; with lights.txt or an .lp file, if the lights are known, and mask.png"],
+    stereo: ["Drop all pictures of the object here, or choose them", "One camera, one light at a time, such as a lamp moved by hand; with lights.txt or an .lp file, if the lights are known, and mask.png"],
 };
 
 const what = () => document.querySelector("input[name=what]:checked").value;
@@ -36,7 +36,7 @@ function take(files) {
     complain("");
     if (!files.length) return;
     if (what() === "estimate") for (const file of files) add(file.name, "estimate", [["photo", file]]);
-    else if (files.length < 3) complain("Many lights are three pictures or more, all chosen at once.");
+    else if (files.length < 2) complain("Many lights are two pictures or more, all chosen at once.");
     else add(`${files.length} files of one object`, "stereo", files.map((file) => [part_of(file), file]));
 }
 

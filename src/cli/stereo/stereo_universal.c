@@ -48,17 +48,29 @@ static status print_json(const universal_request *r, const merlin_maps *maps, co
     return s;
 }
 
+/* Writes which light would tell most, as long as there are few photographs. */
+static const char *advice_on(const merlin_maps *maps, char *text, size_t size)
+{
+    enum { PLENTY = 16 };
+    char lamp[MERLIN_LIGHT_WORDS];
+    if (maps->photographs < 2 || maps->photographs >= PLENTY) return "";
+    merlin_lamp_words(maps->further_light, lamp, sizeof lamp);
+    snprintf(text, size, "; next, %s, tells most", lamp);
+    return text;
+}
+
 static status announce(const universal_request *r, const merlin_maps *maps, const staged_files *written, double seconds)
 {
-    enum { TOLD = 3 };
-    char amount[WRITTEN_WORDS];
+    enum { TOLD = 3, ADVICE = MERLIN_LIGHT_WORDS + 32 };
+    char amount[WRITTEN_WORDS], advice[ADVICE];
     warnings doubts;
     status s = OK;
     stage_bar_hide(r->bar);
     if (r->json)
         s = print_json(r, maps, written, seconds);
     else if (!r->quiet)
-        printf("%s: %s (%.2f s, %s)\n", r->input, r->files->folder, seconds, written_words(written, amount));
+        printf("%s: %s (%.2f s, %s)%s\n", r->input, r->files->folder, seconds, written_words(written, amount),
+               advice_on(maps, advice, sizeof advice));
     merlin_maps_warnings(maps, &doubts);
     if (r->files->page) page_doubt(maps->crop.side, 0, &doubts);
     if (!r->quiet) warnings_print(&doubts, "stereo", r->input, TOLD);

@@ -137,6 +137,17 @@ static void put_light(cJSON *root, const merlin_found_light *l)
     put_numbers(light, "rest", &l->rest[0][0], 27);
 }
 
+/* Adds the lamp that a further photograph should have. */
+static void put_further_light(cJSON *root, const float direction[3])
+{
+    char words[MERLIN_LIGHT_WORDS];
+    if (direction[0] == 0 && direction[1] == 0 && direction[2] == 0) return;
+    cJSON *light = json_put_object(root, "further_light");
+    merlin_lamp_words(direction, words, sizeof words);
+    json_put_text(light, "words", words);
+    put_numbers(light, "direction", direction, 3);
+}
+
 /* Tells whether the scale of albedo is known. A camera adapts a flash's strength to the distance, while an object's
  * brightness does not reveal the strength of other light. */
 static bool is_scale_known(const merlin_maps *maps)
@@ -153,6 +164,7 @@ static char *compose(const merlin_maps *maps)
     if (maps->photographs > 1) {
         json_put_number(root, "photographs", maps->photographs);
         json_put_bool(root, "refined", maps->refined != 0);
+        put_further_light(root, maps->further_light);
     }
     json_put_number(root, "width", maps->albedo.width);
     json_put_number(root, "height", maps->albedo.height);

@@ -46,15 +46,20 @@ static status read_size(const form *f, merlin_params *params)
     return fail(MERLIN_WRONG_USE, "size wants a multiple of %d, not %d", MERLIN_SIZE_STEP, params->size);
 }
 
-status photo_form_params(const form *f, merlin_params *params)
+status photo_form_seeing(const form *f, merlin_params *params)
 {
     *params = merlin_params_default();
-    if (!form_find_file(f, "photo")) return fail(MERLIN_WRONG_USE, "no file \"photo\" was sent");
     status s = photo_form_hint(f, &params->hint);
     if (s == OK && form_find_file(f, "mask") && (form_value(f, "point") || form_value(f, "box")))
         s = fail(MERLIN_WRONG_USE, "point and box help where there is no mask");
     if (s == OK) s = read_size(f, params);
-    if (s == OK) s = form_integer(f, "views", 1, 8, &params->views);
+    return s == OK ? form_integer(f, "views", 1, 8, &params->views) : s;
+}
+
+status photo_form_params(const form *f, merlin_params *params)
+{
+    if (!form_find_file(f, "photo")) return fail(MERLIN_WRONG_USE, "no file \"photo\" was sent");
+    status s = photo_form_seeing(f, params);
     if (s == OK && form_value(f, "fov")) s = form_real(f, "fov", 1, 150, &params->fov);
     if (s == OK) s = form_flag(f, "flash", &params->flash);
     return s == OK ? read_exposure(f, params) : s;

@@ -21,6 +21,8 @@
 
 /* Reads the values; params.hint is that of point and box. */
 status photo_form_params(const form *f, merlin_params *params);
+/* Reads those of them that say how a model sees pictures, too: point, box, size and views. */
+status photo_form_seeing(const form *f, merlin_params *params);
 /* Refuses the fields of a photograph for `what`, which has none. */
 status photo_form_refuse(const form *f, const char *what);
 status photo_form_hint(const form *f, merlin_hint *hint);

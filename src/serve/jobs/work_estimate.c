@@ -3,8 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/file.h"
-#include "serve/jobs/mesh_files.h"
+#include "serve/jobs/maps_files.h"
 #include "serve/jobs/photo_form.h"
 #include "serve/jobs/work_kinds.h"
 
@@ -35,32 +34,15 @@ static void name_of(const form *f, char name[SAFE_NAME])
     if (ending && ending != name) *ending = 0;
 }
 
-static status write_mesh(const work_context *w, const merlin_maps *maps)
-{
-    merlin_mesh mesh = {.vertex_count = 0};
-    status s = merlin_mesh_from_maps(maps, NULL, &mesh);
-    if (s == OK) s = mesh_files_write(w, &mesh);
-    merlin_mesh_free(&mesh);
-    return s;
-}
-
 static status run(const work_context *w, const void *request)
 {
     const estimate_request *r = request;
-    char folder[PATH_MAX], page[PATH_MAX], name[SAFE_NAME];
+    char name[SAFE_NAME];
     merlin_maps maps;
     status s = photo_form_estimate(w, &r->params, &maps);
     if (s != OK) return s;
     name_of(w->form, name);
-    w->progress(w->progress_context, "writing", 0);
-    const merlin_write_params write = {
-        .in_place = 1, .stop = w->stop, .progress = w->progress, .progress_context = w->progress_context};
-    s = merlin_maps_write(w->model, &maps, &write, store_path(w->store, w->form->id, STORE_OUT, NULL, folder));
-    if (s == OK && w->stop()) s = fail(MERLIN_STOPPED, "stopped");
-    const merlin_view_params view = {.name = name};
-    if (s == OK && r->view)
-        s = merlin_view_write(&maps, &view, store_path(w->store, w->form->id, STORE_OUT, "viewer.html", page));
-    if (s == OK && r->mesh) s = write_mesh(w, &maps);
+    s = maps_files_write(w, &maps, (maps_files){r->view ? name : NULL, r->mesh});
     merlin_maps_free(&maps);
     return s;
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "serve/jobs/maps_files.h"
 #include "serve/jobs/mesh_files.h"
 #include "serve/jobs/photo_form.h"
 #include "serve/jobs/work_kinds.h"
@@ -15,7 +16,8 @@ static const char *const picture_endings[] = {".png",  ".jpg", ".jpeg", ".tif", 
                                               ".cr3",  ".nef", ".arw",  ".dng", ".raf",  ".rw2",  ".orf",  NULL};
 
 typedef struct stereo_request {
-    bool photo; /* whether it is one photograph, which is relit */
+    bool photo;     /* whether it is one photograph, which is relit */
+    bool universal; /* whether the lights are unknown, and the model sees the pictures together */
     merlin_params photo_params;
     merlin_stereo_params params;
     int near_lights, unknown_lights, linear;
@@ -24,9 +26,10 @@ typedef struct stereo_request {
 
 /* ---- options ---- */
 
-static status check_pictures(const form *f, const work_limits *limits)
+static status check_pictures(const form *f, const work_limits *limits, bool universal)
 {
-    enum { LEAST = 3 };
+    const int least = universal ? 1 : 3;
+    const char *wants = universal ? "stereo without lights wants" : "stereo wants";
     int count = 0;
     for (size_t i = 0; i < f->file_count; i++) {
         const form_file *file = &f->files[i];
@@ -35,7 +38,7 @@ static status check_pictures(const form *f, const work_limits *limits)
         if (!file_ends_in_any(file->name, picture_endings))
             return fail(MERLIN_WRONG_USE, "%s, sent as %s, has no name of a picture", file->name, file->key);
     }
-    if (count < LEAST) return fail(MERLIN_WRONG_USE, "stereo wants %d pictures or more, not %d", LEAST, count);
+    if (count < least) return fail(MERLIN_WRONG_USE, "%s %d pictures or more, not %d", wants, least, count);
     if (count > limits->pictures)
         return fail(MERLIN_WRONG_USE, "stereo takes %d pictures at most here, not %d", limits->pictures, count);
     return OK;
@@ -43,10 +46,12 @@ static status check_pictures(const form *f, const work_limits *limits)
 
 static status read_values(const form *f, stereo_request *r)
 {
-    static const char *const methods[] = {"auto", "ls", "robust", "near", "semi", "uncalibrated"};
+    enum { UNIVERSAL = MERLIN_STEREO_UNCALIBRATED + 1 };
+    static const char *const methods[] = {"auto", "ls", "robust", "near", "semi", "uncalibrated", "universal"};
     int method = MERLIN_STEREO_AUTO;
     status s = form_choice(f, "method", methods, sizeof methods / sizeof *methods, &method);
-    r->params.method = (merlin_stereo_method)method;
+    r->universal = method == UNIVERSAL;
+    r->params.method = r->universal ? MERLIN_STEREO_AUTO : (merlin_stereo_method)method;
     if (s == OK) s = form_flag(f, "keep_edges", &r->params.keep_edges);
     if (s == OK) s = form_flag(f, "near", &r->near_lights);
     if (s == OK) s = form_flag(f, "unknown", &r->unknown_lights);
@@ -68,6 +73,10 @@ static const form_key of_pictures[] = {{"pictures", FORM_FILE, SIZE_MAX},
                                        {"linear", FORM_VALUE, 1},
                                        {"fov", FORM_VALUE, 1},
                                        {"distance", FORM_VALUE, 1},
+                                       {"point", FORM_VALUE, MERLIN_MOST_POINTS},
+                                       {"box", FORM_VALUE, 1},
+                                       {"size", FORM_VALUE, 1},
+                                       {"views", FORM_VALUE, 1},
                                        {0}};
 static const form_key of_photo[] = {PHOTO_KEYS, {"method", FORM_VALUE, 1}, {"keep_edges", FORM_VALUE, 1}, {0}};
 
@@ -79,9 +88,31 @@ static status check_together(const form *f, const stereo_request *r)
         return fail(MERLIN_WRONG_USE,
                     "stereo of a photo, which is relit by near lights, has the methods auto, near and "
                     "uncalibrated");
-    if (!r->photo && m == MERLIN_STEREO_UNCALIBRATED && (form_find_file(f, "lights") || r->near_lights))
-        return fail(MERLIN_WRONG_USE, "method uncalibrated takes no lights and no near: it finds both kinds of lights");
+    const bool finds = r->universal || m == MERLIN_STEREO_UNCALIBRATED;
+    if (r->photo && r->universal) return fail(MERLIN_WRONG_USE, "method universal is for pictures, not for a photo");
+    if (!r->photo && finds && (form_find_file(f, "lights") || r->near_lights))
+        return fail(MERLIN_WRONG_USE, "method %s takes no lights and no near: it finds both kinds of lights",
+                    r->universal ? "universal" : "uncalibrated");
     return OK;
+}
+
+/* Takes what only the model's way with pictures has use for. */
+static status read_seeing(const form *f, stereo_request *r)
+{
+    static const char *const of_model[] = {"point", "box", "size", "views"};
+    if (r->universal) return photo_form_seeing(f, &r->photo_params);
+    for (size_t i = 0; i < sizeof of_model / sizeof *of_model; i++)
+        if (form_value(f, of_model[i]))
+            return fail(MERLIN_WRONG_USE, "%s is for a photo, or pictures without lights", of_model[i]);
+    return OK;
+}
+
+static status check_capture(const form *f, const work_limits *limits, stereo_request *r)
+{
+    const bool unknown = r->unknown_lights || !form_find_file(f, "lights");
+    r->universal |= unknown && !r->near_lights && r->params.method == MERLIN_STEREO_AUTO;
+    status s = check_pictures(f, limits, r->universal);
+    return s == OK ? read_seeing(f, r) : s;
 }
 
 static status check(const form *f, const work_limits *limits, void **request)
@@ -91,9 +122,10 @@ static status check(const form *f, const work_limits *limits, void **request)
     if (!r) return fail(MERLIN_NO_MEMORY, "no memory for a request");
     r->photo = form_find_file(f, "photo") != NULL;
     status s = form_check(f, r->photo ? "stereo of a photo" : "stereo", r->photo ? of_photo : of_pictures);
-    if (s == OK) s = r->photo ? photo_form_params(f, &r->photo_params) : check_pictures(f, limits);
     if (s == OK) s = read_values(f, r);
-    return s == OK ? check_together(f, r) : s;
+    if (s == OK) s = check_together(f, r);
+    if (s != OK) return s;
+    return r->photo ? photo_form_params(f, &r->photo_params) : check_capture(f, limits, r);
 }
 
 /* ---- the work ---- */
@@ -148,6 +180,24 @@ static status write_surface(const work_context *w, const merlin_surface *surface
     return s;
 }
 
+/* Makes maps of pictures whose lights nobody knows, as the command does. */
+static status see_together(const work_context *w, const stereo_request *r)
+{
+    merlin_params params = r->photo_params;
+    merlin_capture *capture = NULL;
+    merlin_maps maps = {.size = 0};
+    params.fov = r->field_of_view;
+    params.stop = w->stop;
+    params.progress = w->progress;
+    params.progress_context = w->progress_context;
+    status s = read_capture(w, r, &capture);
+    if (s == OK) s = merlin_maps_from_capture(w->model, capture, &params, &maps);
+    merlin_capture_free(capture);
+    if (s == OK) s = maps_files_write(w, &maps, (maps_files){"object", 1});
+    merlin_maps_free(&maps);
+    return s;
+}
+
 static status solve_pictures(const work_context *w, const stereo_request *r, const merlin_stereo_params *params,
                              merlin_surface *out)
 {
@@ -174,6 +224,7 @@ static status run(const work_context *w, const void *request)
     const stereo_request *r = request;
     merlin_surface surface = {.light_count = 0};
     merlin_stereo_params params = r->params;
+    if (r->universal) return see_together(w, r);
     params.stop = w->stop;
     params.progress = w->progress;
     params.progress_context = w->progress_context;

@@ -108,7 +108,7 @@ async function faults() {
     get("files").focus();
     document.querySelector("input[name=what][value=stereo]").click();
     dispatchEvent(new DragEvent("drop", { dataTransfer: files, bubbles: true, cancelable: true }));
-    await check("one picture is no capture", () => get("trouble").textContent.startsWith("Many lights are three pictures"));
+    await check("one picture is no capture", () => get("trouble").textContent.startsWith("Many lights are two pictures"));
     button("cup.png", "Remove").click();
     await check("a result can be removed, from the server, too", () => !card("cup.png"));
 }
