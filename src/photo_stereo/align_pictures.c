@@ -142,21 +142,42 @@ static double likeness(const level *l, int k, shift by)
     return spread > 0 ? (ab - a * b / count) / sqrt(spread) : 0;
 }
 
+/* Shifts that are tried of one picture. */
+typedef struct trial {
+    const level *level;
+    int picture, side; /* side² of them */
+    shift start;       /* in the middle */
+    double likeness[(2 * FIRST_REACH + 1) * (2 * FIRST_REACH + 1)];
+} trial;
+
+static shift tried(const trial *t, size_t i)
+{
+    const int half = t->side / 2, at = (int)i;
+    return (shift){t->start.x + at % t->side - half, t->start.y + at / t->side - half};
+}
+
+static void try_shift(void *context, size_t i)
+{
+    trial *t = context;
+    const shift by = tried(t, i);
+    const bool inside = abs(by.x) < t->level->width && abs(by.y) < t->level->height;
+    t->likeness[i] = inside ? likeness(t->level, t->picture, by) : -1;
+}
+
 /* Finds the shift with which a picture's edges are most like the others'. */
 static void find_shift(level *l, int k, int reach)
 {
-    const shift start = l->by[k];
+    trial t = {.level = l, .picture = k, .side = 2 * reach + 1, .start = l->by[k]};
+    const size_t count = (size_t)t.side * (size_t)t.side;
     const double unmoved = likeness(l, k, (shift){0, 0});
     double best = unmoved;
+    parallel_for(count, try_shift, &t);
     l->by[k] = (shift){0, 0};
-    for (int y = start.y - reach; y <= start.y + reach; y++)
-        for (int x = start.x - reach; x <= start.x + reach; x++) {
-            if (abs(x) >= l->width || abs(y) >= l->height) continue;
-            const double is = likeness(l, k, (shift){x, y});
-            if (is <= best) continue;
-            best = is;
-            l->by[k] = (shift){x, y};
-        }
+    for (size_t i = 0; i < count; i++) {
+        if (t.likeness[i] <= best) continue;
+        best = t.likeness[i];
+        l->by[k] = tried(&t, i);
+    }
     if (best < alike || 1 - best > (l->finest ? clearly : perhaps) * (1 - unmoved)) l->by[k] = (shift){0, 0};
 }
 
