@@ -82,7 +82,7 @@ typedef struct merlin_maps {
     int refined; /* 1: photometric stereo from several photographs made the normals, and the depth agrees with these */
     float further_light[3]; /* of several photographs: unit vector toward the lamp under which a further one would tell
                              * most; zeros: unknown */
-    float fov;   /* horizontal field of view of the crop in degrees, by the lens; 0: unknown, taken to be 60 */
+    float fov;      /* horizontal field of view of the crop in degrees, by the lens; 0: unknown, taken to be 60 */
     float slant[2]; /* direction from the lens to the crop's middle, as sines to the right and upwards; the maps' space
                      * is that of a camera that looks at it */
     struct {

@@ -62,9 +62,9 @@ typedef struct merlin_capture_files {
 } merlin_capture_files;
 
 /* Reads a capture: PNG, JPEG, TIFF, EXR or raw pictures, else WebP, HEIC or HDR ones, and their lights. 16-bit pictures
- * are linear unless they state otherwise (a colour profile, a PNG's chunk, EXIF), raw ones always. The folder may also be
- * a video of an object under a lamp that moves, with unknown_lights or lights_optional: its frames whose light differs
- * most are read. files NULL: the defaults. */
+ * are linear unless they state otherwise (a colour profile, a PNG's chunk, EXIF), raw ones always. The folder may also
+ * be a video of an object under a lamp that moves, with unknown_lights or lights_optional: its frames whose light
+ * differs most are read. files NULL: the defaults. */
 merlin_status merlin_capture_read(const char *folder, const merlin_capture_files *files, merlin_capture **out);
 /* Reads a capture of these pictures, in this order, under unknown lights; no files beside them are read. */
 merlin_status merlin_capture_read_pictures(const char *const *pictures, size_t count, const merlin_capture_files *files,

@@ -63,7 +63,8 @@ Maps = _struct("maps", [(name, Image) for name in MAP_NAMES] + [
     ("has_environment", c_int), ("environment", floats9x3), ("light", FoundLight), ("mask_confidence", c_float),
     ("model", c_char * 64), ("timing", Timing), ("doubts", c_uint), ("light_elsewhere", c_float), ("reduced", c_int),
     ("frames", c_int), ("captured", c_int), ("photographs", c_int), ("refined", c_int),
-    ("further_light", floats3), ("fov", c_float), ("slant", c_float * 2), ("mended", Mended), ("noticed", POINTER(Warnings))])
+    ("further_light", floats3), ("fov", c_float), ("slant", c_float * 2), ("mended", Mended),
+    ("noticed", POINTER(Warnings))])
 DOUBTS = (
     "NO_OBJECT", "BURNT_OUT", "OBJECT_UNSURE", "LIGHT_ELSEWHERE", "NO_FLASH", "LIGHT_BEHIND", "HOLLOW", "DRAWING",
     "LENS_NARROW", "LENS_WIDE", "DARK", "OBJECT_CUT", "OBJECT_SMALL", "GREY", "REDUCED", "FIRST_FRAME",
@@ -133,8 +134,8 @@ DISTANT_LIGHTS, NEAR_LIGHTS, UNKNOWN_LIGHTS = range(3)
 Light = _struct("light", [("direction", floats3), ("position", floats3), ("intensity", floats3), ("lobe", c_float)])
 CaptureFiles = _struct("capture_files", [
     ("lights", c_char_p), ("mask", c_char_p), ("ambient", c_char_p), ("near_lights", c_int),
-    ("unknown_lights", c_int), ("lights_optional", c_int), ("frames", c_int), ("linear", c_int), ("field_of_view", c_float),
-    ("distance", c_float), *_WATCH])
+    ("unknown_lights", c_int), ("lights_optional", c_int), ("frames", c_int), ("linear", c_int),
+    ("field_of_view", c_float), ("distance", c_float), *_WATCH])
 CaptureParams = _struct("capture_params", [
     ("lighting", c_int), ("unknown_intensities", c_int), ("field_of_view", c_float), ("distance", c_float)])
 STEREO_AUTO, STEREO_LS, STEREO_ROBUST, STEREO_NEAR, STEREO_SEMI, STEREO_UNCALIBRATED = range(6)

@@ -66,8 +66,8 @@ class Capture:
         check("capture_new", ctypes.byref(params), None if cover is None else cover.at, self._owner.at)
 
     @classmethod
-    def read(cls, source: Union[PathLike, Sequence[PathLike]], *, lights: Optional[PathLike] = None, mask: Optional[PathLike] = None,
-             ambient: Optional[PathLike] = None, near: bool = False, unknown: bool = False, linear: bool = False,
+    def read(cls, source: Union[PathLike, Sequence[PathLike]], *, lights: Optional[PathLike] = None,
+             mask: Optional[PathLike] = None, ambient: Optional[PathLike] = None, near: bool = False, unknown: bool = False, linear: bool = False,
              frames: int = 0, field_of_view: float = 0.0, distance: float = 0.0, progress: Optional[ProgressCallback] = None,
              stop: Optional[StopCallback] = None) -> "Capture":
         """Reads a folder of pictures and the lights they were taken under (docs/captures.md), or a list of pictures or a
@@ -84,7 +84,7 @@ class Capture:
         watch.put(files)
         made = cls.__new__(cls)
         made._owner = Owner(ctypes.c_void_p(), "capture_free")
-        if is_path(source):
+        if isinstance(source, (str, bytes, os.PathLike)):
             name = path_bytes(source)
             watch.check("capture_read", name, ctypes.byref(files), made._owner.at, path=os.fsdecode(name))
         else:

@@ -158,8 +158,8 @@ class Maps:
     @property
     def further_light(self) -> Optional[Tuple[float, float, float]]:
         """Of several photographs: toward the lamp under which a further one would tell most; else None."""
-        way = tuple(self._struct.further_light)
-        return way if any(way) else None
+        x, y, z = self._struct.further_light
+        return (x, y, z) if x or y or z else None
 
     @property
     def reduced(self) -> int:

@@ -9,8 +9,8 @@
 #include "base/parallel.h"
 #include "image/resize.h"
 
-/* Longer sides of the coarsest and the finest pictures of edges, how far is searched in them, and how often; ratio of the longer
- * side to the margin around the mask, which holds the outline. */
+/* Longer sides of the coarsest and the finest pictures of edges, how far is searched in them, and how often; ratio of
+ * the longer side to the margin around the mask, which holds the outline. */
 enum { COARSEST = 128, FINEST = 1024, FIRST_REACH = 6, REACH = 2, PASSES = 4, MARGIN = 32 };
 /* Brightness, as a share of a picture's mean, that is added before the logarithm, so that noise in the dark is no edge;
  * largest slope of the logarithm that counts: an outline before a dark background would be all there is else. */
@@ -289,7 +289,7 @@ status align_pictures(const merlin_capture *c, merlin_capture *out, picture_shif
     int finest = 1;
     *out = *c;
     *shifts = (picture_shifts){0};
-    out->picture = malloc(count * sizeof *out->picture);
+    out->picture = calloc(count, sizeof *out->picture);
     shift *by = calloc(count, sizeof *by);
     status s = out->picture && by ? OK : fail(MERLIN_NO_MEMORY, "no memory for %d pictures", c->count);
     if (s == OK) memcpy(out->picture, c->picture, count * sizeof *out->picture);

@@ -32,12 +32,12 @@ static const char help[] =
     "       merlin stereo PHOTO|MAPS [options]\n"
     "       merlin stereo calibrate --sphere chrome|matte DIR [options]\n\n"
     "Normals, albedo and the surface of an object by photometric stereo: from a folder of pictures, each under one\n"
-    "light (lights.txt, an .lp file, the LUCES or the DiLiGenT layout; without such a list the model sees the "
-    "pictures\n"
-    "together, and all is written that merlin estimate writes), likewise from pictures named one by one or a video under\n"
-    "a lamp that moves, of which the frames are taken whose light differs most; or from one photograph, relit by the model under 50\n"
-    "lights. MAPS is a folder made by merlin estimate, or its maps.exr: the photograph is not estimated\n"
-    "again. A PHOTO may be -, standard input. calibrate finds light directions from pictures of a ball.\n\n"
+    "light (lights.txt, an .lp file, the LUCES or the DiLiGenT layout; without such a list the model sees the\n"
+    "pictures together, and all is written that merlin estimate writes), likewise from pictures named one by one or\n"
+    "a video under a lamp that moves, of which the frames are taken whose light differs most; or from one\n"
+    "photograph, relit by the model under 50 lights. MAPS is a folder made by merlin estimate, or its maps.exr: the\n"
+    "photograph is not estimated again. A PHOTO may be -, standard input. calibrate finds light directions from\n"
+    "pictures of a ball.\n\n"
     "      --lights FILE    x y z a line, in the order of the pictures' names (9.png before 10.png), or .lp, likewise\n"
     "                       where it names none of the pictures, as a dome's (default: found in DIR); equally strong,\n"
     "                       unless DIR, or what FILE is in, has a light_intensities.txt (or .csv) with one or three\n"
@@ -204,10 +204,10 @@ static status take_inputs(request *r, int count, char **names)
     if (count == 1) return photo_take_input(names, r->output, &r->input);
     r->input = names[0];
     for (int i = 0; i < count; i++) {
-        const char *kind = file_is_folder(names[i])            ? "a folder"
-                           : merlin_frames_are(names[i]) == 1   ? "a video"
-                           : strcmp(names[i], "-") == 0         ? "standard input"
-                                                                : NULL;
+        const char *kind = file_is_folder(names[i])           ? "a folder"
+                           : merlin_frames_are(names[i]) == 1 ? "a video"
+                           : strcmp(names[i], "-") == 0       ? "standard input"
+                                                              : NULL;
         if (kind) return fail(MERLIN_WRONG_USE, "%s is %s, which comes alone", names[i], kind);
         if (!file_exists(names[i])) return fail(MERLIN_BAD_INPUT, "there is no picture %s", names[i]);
     }

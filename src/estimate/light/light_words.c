@@ -31,8 +31,7 @@ int merlin_light_words(const merlin_found_light *light, char *text, int size)
     if (beam) merlin_lamp_words(light->lamp, of_lamp, sizeof of_lamp);
     if (flash && !beam && !rest && !found_light_is_flash(light))
         return snprintf(text, room, "a flash and a little other light");
-    return snprintf(text, room, "%s%s%s%s", flash ? "a flash" : "", flash && beam ? " and " : "",
-                    of_lamp,
+    return snprintf(text, room, "%s%s%s%s", flash ? "a flash" : "", flash && beam ? " and " : "", of_lamp,
                     !rest           ? ""
                     : flash || beam ? ", in a room"
                                     : "a room's light");

@@ -7,9 +7,9 @@
  *     s = frame_looks_choose(&looks, 16, chosen, &count);
  *     frame_looks_free(&looks);
  *
- * A frame's look is its brightness in 24×24 cells, of unit length, so that neither exposure nor a lamp's strength counts.
- * Two frames differ by the distance of their looks, from 0 to 2. Of a long video, every second, fourth, ... frame is
- * considered, so that memory is limited. */
+ * A frame's look is its brightness in 24×24 cells, of unit length, so that neither exposure nor a lamp's strength
+ * counts. Two frames differ by the distance of their looks, from 0 to 2. Of a long video, every second, fourth, ...
+ * frame is considered, so that memory is limited. */
 #ifndef MERLIN_STEREO_CAPTURE_FRAME_CHOICE_H
 #define MERLIN_STEREO_CAPTURE_FRAME_CHOICE_H
 

@@ -188,8 +188,8 @@ static status read_first_shape(reading *r, merlin_capture *c)
     status s = read_one(r, c->name[0], r->first, &r->bits);
     if (s != OK) return s;
     if (c->width && (c->width != first->width || c->height != first->height))
-        s = fail(MERLIN_BAD_INPUT, "%s is %d x %d pixels, but the lights' file says %d x %d",
-                 told(r, c->name[0], path), first->width, first->height, c->width, c->height);
+        s = fail(MERLIN_BAD_INPUT, "%s is %d x %d pixels, but the lights' file says %d x %d", told(r, c->name[0], path),
+                 first->width, first->height, c->width, c->height);
     if (s == OK) s = inspect_first(r, c);
     c->width = first->width;
     c->height = first->height;

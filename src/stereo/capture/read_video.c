@@ -11,7 +11,8 @@
 
 enum { USUAL_FRAMES = 16 };
 
-/* Share of full scale that the brightest value of a high dynamic range becomes, below what solvers regard as saturated. */
+/* Share of full scale that the brightest value of a high dynamic range becomes, below what solvers regard as saturated.
+ */
 static const float ceiling = 0.97f;
 
 typedef struct video_reading {
@@ -49,7 +50,7 @@ static status for_frames(video_reading *r, int pass,
 static status look_at(video_reading *r, size_t number, img *frame, bool *enough)
 {
     (void)number;
-    (void)enough;
+    *enough = false;
     for (size_t i = 0, n = img_value_count(frame); i < n; i++)
         r->brightest = fmaxf(r->brightest, frame->data[i]);
     return frame_looks_add(&r->looks, frame);
