@@ -3,7 +3,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#include "stereo/capture/array_file.h"
+#include "stereo/arrays/array_file.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

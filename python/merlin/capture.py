@@ -67,8 +67,9 @@ class Capture:
 
     @classmethod
     def read(cls, source: Union[PathLike, Sequence[PathLike]], *, lights: Optional[PathLike] = None,
-             mask: Optional[PathLike] = None, ambient: Optional[PathLike] = None, near: bool = False, unknown: bool = False, linear: bool = False,
-             frames: int = 0, field_of_view: float = 0.0, distance: float = 0.0, progress: Optional[ProgressCallback] = None,
+             mask: Optional[PathLike] = None, ambient: Optional[PathLike] = None, near: bool = False,
+             unknown: bool = False, linear: bool = False, frames: int = 0, field_of_view: float = 0.0,
+             distance: float = 0.0, progress: Optional[ProgressCallback] = None,
              stop: Optional[StopCallback] = None) -> "Capture":
         """Reads a folder of pictures and the lights they were taken under (docs/captures.md), or a list of pictures or a
         video under lights that are not known (a video wants unknown=True).

@@ -4,7 +4,7 @@
 
 #include "capture_files.h"
 #include "comma.h"
-#include "stereo/capture/array_file.h"
+#include "stereo/arrays/array_file.h"
 #include "stereo/capture/capture.h"
 #include "stereo/capture/luces.h"
 

@@ -5,7 +5,7 @@
 #include "base/file.h"
 #include "base/lights/light_list.h"
 #include "base/text/text.h"
-#include "stereo/capture/array_file.h"
+#include "stereo/arrays/array_file.h"
 #include "stereo/capture/capture_parts.h"
 #include "stereo/capture/match_lights.h"
 

@@ -5,7 +5,7 @@
 #include "base/file.h"
 #include "base/text/text_rows.h"
 #include "image/read/read.h"
-#include "stereo/capture/array_file.h"
+#include "stereo/arrays/array_file.h"
 #include "stereo/capture/capture_parts.h"
 #include "stereo/capture/luces.h"
 

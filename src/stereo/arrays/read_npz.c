@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "stereo/capture/array_parts.h"
+#include "stereo/arrays/array_parts.h"
 
 enum { END_SIZE = 22, ENTRY_SIZE = 46, LOCAL_SIZE = 30, MOST_COMMENT = 65535, STORED = 0, DEFLATED = 8 };
 

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* Functions shared by the readers of .mat and .npz: numbers from bytes, checks of sizes, zlib. */
-#ifndef MERLIN_STEREO_CAPTURE_ARRAY_PARTS_H
-#define MERLIN_STEREO_CAPTURE_ARRAY_PARTS_H
+#ifndef MERLIN_STEREO_ARRAYS_ARRAY_PARTS_H
+#define MERLIN_STEREO_ARRAYS_ARRAY_PARTS_H
 
 #include <stdint.h>
 
-#include "stereo/capture/array_file.h"
+#include "stereo/arrays/array_file.h"
 
 /* Largest array in bytes, more than any picture's normals; a damaged size beyond it is refused before memory is
  * allocated. */

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "stereo/capture/array_parts.h"
+#include "stereo/arrays/array_parts.h"
 
 enum {
     HEADER_SIZE = 128,

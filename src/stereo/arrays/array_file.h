@@ -7,8 +7,8 @@
  *     float n = a.data[array_at(&a, row, column, 2)];
  *     array_free(&a);
  */
-#ifndef MERLIN_STEREO_CAPTURE_ARRAY_FILE_H
-#define MERLIN_STEREO_CAPTURE_ARRAY_FILE_H
+#ifndef MERLIN_STEREO_ARRAYS_ARRAY_FILE_H
+#define MERLIN_STEREO_ARRAYS_ARRAY_FILE_H
 
 #include <stdbool.h>
 #include <stddef.h>

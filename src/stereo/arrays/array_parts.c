@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "stereo/capture/array_parts.h"
+#include "stereo/arrays/array_parts.h"
 
 #include <limits.h>
 #include <math.h>
