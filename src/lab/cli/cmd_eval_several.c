@@ -21,6 +21,7 @@ static const char help[] =
     "  --data DIR       held-out samples\n"
     "  --model W        weights (default: merlin-any)\n"
     "  --count N        only the first N samples\n"
+    "  --size N         side of the photographs that the network sees, a multiple of 32 (default 256)\n"
     "  --views N        maps as merlin estimate --views N makes them (default 4, as there)\n"
     "      --json       report on standard output as JSON\n"
     "  -t, --threads N  how many threads work (default: one a processor)\n"
@@ -38,6 +39,7 @@ static status parse(int argc, char **argv, request *r)
         {"data", .text = &r->options.data},
         {"model", .text = &r->options.weights},
         {"count", .count = &r->options.count, .low = 1, .high = 1000000},
+        {"size", .integer = &r->options.size, .low = MERLIN_LEAST_SIZE, .high = NETWORK_SIZE},
         {"views", .integer = &r->options.views, .low = 1, .high = 8},
         {"json", .flag = &r->json},
         {"quiet", 'q', .flag = &r->options.quiet},
@@ -47,6 +49,8 @@ static status parse(int argc, char **argv, request *r)
     status s = cli_read_options(&argc, &argv, options);
     if (s != OK || r->help) return s;
     if (argc > 0) return fail(MERLIN_WRONG_USE, "unexpected argument \"%s\"", argv[0]);
+    if (r->options.size % MERLIN_SIZE_STEP)
+        return fail(MERLIN_WRONG_USE, "--size wants a multiple of %d, not %d", MERLIN_SIZE_STEP, r->options.size);
     return r->options.data ? OK : fail(MERLIN_WRONG_USE, "--data DIR is missing");
 }
 
@@ -59,7 +63,7 @@ static status announce(const request *r, const several_table *t)
 
 int eval_several(int argc, char **argv)
 {
-    request r = {.options = {.views = NETWORK_VIEWS, .stopped = cli_interrupted}};
+    request r = {.options = {.views = NETWORK_VIEWS, .size = NETWORK_SIZE, .stopped = cli_interrupted}};
     if (parse(argc, argv, &r) != OK) return cli_usage("eval several", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
     cli_catch_interrupts();

@@ -37,7 +37,7 @@ static void photographs_free(photographs *p)
 }
 
 /* Takes a photograph under one lamp, which exposes it as a camera does. */
-static status photograph(const lit_subject *on, int number, photographs *out)
+static status photograph(const lit_subject *on, int number, int size, photographs *out)
 {
     img radiance = {0}, *photo = &out->photo[out->count];
     float white = 1;
@@ -45,7 +45,7 @@ static status photograph(const lit_subject *on, int number, photographs *out)
     status s = lit_radiance(on, &(lit_mixture){.lamp = number}, &radiance, &white);
     for (size_t i = 0; s == OK && i < img_value_count(&radiance); i++)
         radiance.data[i] = clamp(radiance.data[i] / white, 0, 1);
-    if (s == OK) s = input_make(&radiance, &on->s->mask, network_side(NETWORK_SIZE), photo, &out->mask);
+    if (s == OK) s = input_make(&radiance, &on->s->mask, network_side(size), photo, &out->mask);
     img_free(&radiance);
     if (s != OK) return s;
     out->count++;
@@ -61,6 +61,21 @@ static double lamp_error(const sample_lamp *truth, const float *lights)
     return acos((double)clamp(vec3_dot(vec3_normalize(way), seen), -1, 1)) / DEGREE;
 }
 
+/* Adds the figures of maps, which are enlarged to the sample's size first. */
+static status add_figures(const surface *maps, const lit_subject *on, double sum[LIT_FIGURES])
+{
+    surface whole = {0};
+    if (!maps->normal.data) return OK;
+    if (maps->normal.width == on->mask.width) {
+        lit_figures_add(maps, on, sum);
+        return OK;
+    }
+    status s = surface_resize(maps, &on->mask, &whole);
+    if (s == OK) lit_figures_add(&whole, on, sum);
+    surface_free(&whole);
+    return s;
+}
+
 static status measure(const run *r, const lit_subject *on, const photographs *p, int row)
 {
     const int count = 1 << row;
@@ -72,7 +87,7 @@ static status measure(const run *r, const lit_subject *on, const photographs *p,
                                      : network_estimate_several(r->network, p->photo, count, &p->mask, &p->how,
                                                                 o->views, o->stopped, lights, &found);
     if (s == OK) {
-        if (found.maps.normal.data) lit_figures_add(&found.maps, on, r->table->mean[row]);
+        s = add_figures(&found.maps, on, r->table->mean[row]);
         for (int i = 0; i < count; i++)
             r->table->lamp[row] += lamp_error(&on->s->lamps[i], lights[i]) / count;
         r->table->count[row]++;
@@ -91,7 +106,7 @@ static status measure_subject(void *context, const lit_subject *on)
         st = fail(MERLIN_BAD_INPUT, "samples of %d×%d pixels: render them with --size %d", s->mask.width,
                   s->mask.height, NETWORK_SIZE);
     for (int i = 0; i < s->lamp_count && i < MOST && st == OK; i++)
-        st = photograph(on, i, &all);
+        st = photograph(on, i, r->options->size, &all);
     for (int row = 0; row < SEVERAL_ROWS && 1 << row <= all.count && st == OK; row++)
         st = measure(r, on, &all, row);
     if (st == OK) r->table->samples++;

@@ -3,7 +3,8 @@
  * number, on samples that merlin-lab render made with --lamps. A network of one photograph gives the mean of what it
  * makes of each.
  *
- *     several_options options = {.data = "lit", .weights = "several.safetensors", .views = NETWORK_VIEWS};
+ *     several_options options = {.data = "lit", .weights = "several.safetensors", .views = NETWORK_VIEWS,
+ *                                .size = NETWORK_SIZE};
  *     several_table table;
  *     status s = several_table_run(&options, &table);
  *     if (s == OK) several_table_print(&table, stdout); */
@@ -33,6 +34,7 @@ typedef struct several_options {
     const char *data, *weights;
     size_t count; /* samples at most; 0: all */
     int views;
+    int size; /* side of the photographs that the network sees, as in merlin_params; its maps are enlarged */
     bool quiet;
     int (*stopped)(void); /* asked between samples; NULL: never */
 } several_options;
