@@ -127,17 +127,14 @@ static status announce(const request *r, const serve *server)
 /* Prepares the network before the first photograph arrives. */
 static status open_models(const request *r, merlin_model **model)
 {
-    char *weights = NULL, *flash = NULL, *lights = NULL;
+    char *weights = NULL, *flash = NULL;
     const merlin_params params = merlin_params_default();
     status s = photo_find_models(r->model_name, &weights, &flash);
     if (s == OK) s = photo_open_models(weights, flash, model);
-    /* chosen weights stand alone, as they do for flashes */
-    if (s == OK && flash) s = photo_find_lights(NULL, &lights);
-    if (s == OK && lights) s = merlin_model_add_lights(*model, lights);
+    if (s == OK) s = photo_add_lights(flash, *model);
     if (s == OK) s = merlin_model_prepare(*model, &params);
     free(weights);
     free(flash);
-    free(lights);
     return s;
 }
 

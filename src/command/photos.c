@@ -364,6 +364,15 @@ status photo_find_lights(const char *asked, char **path)
     return asked ? photo_find_model(asked, path) : find_shipped("merlin-lights", path);
 }
 
+status photo_add_lights(const char *flash, merlin_model *model)
+{
+    char *lights = NULL;
+    status s = flash ? photo_find_lights(NULL, &lights) : OK;
+    if (s == OK && lights) s = merlin_model_add_lights(model, lights);
+    free(lights);
+    return s;
+}
+
 status photo_open_models(const char *path, const char *flash, merlin_model **out)
 {
     status s = merlin_model_open(path, out);

@@ -58,6 +58,10 @@ status photo_find_models_of(const merlin_maps *maps, const char *asked, char **p
  * is there, else *path is NULL. malloc'ed. */
 status photo_find_lights(const char *asked, char **path);
 
+/* Adds merlin-lights, where it is there, to a model of weights that were not chosen; flash: what photo_find_models
+ * found, NULL of chosen weights, which stand alone. */
+status photo_add_lights(const char *flash, merlin_model *model);
+
 /* Opens the result of photo_find_models; flash may be NULL. */
 status photo_open_models(const char *path, const char *flash, merlin_model **out);
 

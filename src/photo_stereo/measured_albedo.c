@@ -5,6 +5,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/number.h"
+
 /* Rounds of the fit, each of which leaves out what differs by more than this from the last one: highlights and pixels
  * that hardly any light reached. */
 enum { ROUNDS = 4 };
@@ -57,11 +59,6 @@ static float scale_of(const merlin_image *measured, const merlin_maps *maps, int
     return scale;
 }
 
-static float limited(float albedo)
-{
-    return albedo < 0 ? 0 : albedo > 1 ? 1 : albedo;
-}
-
 void measured_albedo_take(const merlin_image *measured, merlin_maps *maps)
 {
     const int channels = measured->channels;
@@ -76,7 +73,7 @@ void measured_albedo_take(const merlin_image *measured, merlin_maps *maps)
             if (!(scale[from] > 0) || !is_measured(measured, maps, i, from)) continue;
             const float a = scale[from] * measured->data[i * (size_t)channels + (size_t)from];
             float *to = maps->albedo.data + 3 * i + ch;
-            *to = limited(channels == 3 ? a : before > 0 ? a * *to / before : a);
+            *to = clamp(channels == 3 ? a : before > 0 ? a * *to / before : a, 0, 1);
         }
     }
 }

@@ -25,7 +25,7 @@ static status check_camera(float field_of_view, float distance)
     return OK;
 }
 
-/* What a capture is read from: a folder or a video, or pictures one by one. */
+/* Source of a capture: a folder or a video, or pictures one by one. */
 typedef struct capture_source {
     const char *folder;
     const char *const *pictures;

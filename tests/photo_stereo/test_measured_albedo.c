@@ -43,7 +43,7 @@ static void free_both(merlin_image *measured, merlin_maps *maps)
     img_free(&maps->mask);
 }
 
-/* What was measured differs from the truth by one factor in each channel, whatever faults there are. */
+/* The measured albedo differs from the truth by one factor in each channel, whatever faults there are. */
 static void each_channel_has_its_scale(void **state)
 {
     (void)state;

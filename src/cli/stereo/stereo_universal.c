@@ -17,15 +17,12 @@
 /* Opens the weights that were asked for, else those for any light; flashes have no network of their own here. */
 static status open_model(const universal_request *r, merlin_model **out)
 {
-    char *weights = NULL, *flash = NULL, *lights = NULL;
+    char *weights = NULL, *flash = NULL;
     status s = photo_find_models(r->weights, &weights, &flash);
-    /* chosen weights stand alone, as they do for flashes */
-    if (s == OK && flash) s = photo_find_lights(NULL, &lights);
     if (s == OK) s = merlin_model_open(weights, out);
-    if (s == OK && lights) s = merlin_model_add_lights(*out, lights);
+    if (s == OK) s = photo_add_lights(flash, *out);
     free(weights);
     free(flash);
-    free(lights);
     if (s == OK) return OK;
     merlin_model_close(*out);
     *out = NULL;

@@ -5,7 +5,7 @@
 
 #include "serve/jobs/work.h"
 
-/* Which files are written beside those of merlin estimate. */
+/* Files that are written beside those of merlin estimate. */
 typedef struct maps_files {
     const char *page; /* the object's name on viewer.html; NULL: no page */
     int mesh;         /* 1: mesh.glb and mesh.ply */

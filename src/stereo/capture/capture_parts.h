@@ -54,6 +54,10 @@ status pst_read_diligent_truth(const char *folder, merlin_capture *c);
 /* Reads the pictures named in c->name, in this folder or, if that is NULL, anywhere, and subtracts the ambient one. If
  * a layout has set a width and height, the pictures must have them. */
 status pst_read_pictures(const char *folder, const merlin_capture_files *options, merlin_capture *c);
+/* Share of full scale that the brightest of floats becomes where it is scaled: below what solvers regard as saturated.
+ */
+#define PST_FLOAT_CEILING 0.97f
+
 /* Share of full scale: pixels that no light raises above it are background, or never lit. */
 #define PST_BLACK 0.004f
 

@@ -12,9 +12,6 @@
 #include "image/read/read.h"
 #include "stereo/capture/capture_parts.h"
 
-/* Full scale of the brightest unclipped float, below what solvers regard as saturated. */
-static const float FLOAT_CEILING = 0.97f;
-
 /* Brightest value below which floats are scaled up: dim ones would become a few codes in 16 bits, and black. */
 static const float FLOAT_DIM = 0.1f;
 
@@ -177,7 +174,7 @@ static status measure_scale(reading *r)
     for (int i = 0; i < r->into->count; i++)
         most = fmaxf(most, r->brightest[i]);
     free(r->brightest);
-    r->scale = most > FLOAT_CEILING || (most > 0 && most < FLOAT_DIM) ? FLOAT_CEILING / most : 1;
+    r->scale = most > PST_FLOAT_CEILING || (most > 0 && most < FLOAT_DIM) ? PST_FLOAT_CEILING / most : 1;
     return s;
 }
 

@@ -11,10 +11,6 @@
 
 enum { USUAL_FRAMES = 16 };
 
-/* Share of full scale that the brightest value of a high dynamic range becomes, below what solvers regard as saturated.
- */
-static const float ceiling = 0.97f;
-
 typedef struct video_reading {
     const char *path;
     watch watch;
@@ -73,7 +69,7 @@ static status keep_chosen(video_reading *r, size_t number, img *frame, bool *eno
     c->width = frame->width;
     c->height = frame->height;
     c->channels = frame->channels;
-    const float scale = r->brightest > 1 ? ceiling / r->brightest : 1;
+    const float scale = r->brightest > 1 ? PST_FLOAT_CEILING / r->brightest : 1;
     for (size_t i = 0, n = img_value_count(frame); i < n; i++)
         frame->data[i] *= scale;
     status s = pst_capture_add(c, frame, &unknown);

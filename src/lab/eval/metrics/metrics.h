@@ -22,7 +22,7 @@
  * [-1, 1] (EVAL_UNIT), unit normals and depth in scene units. */
 double eval_mse(const img *a, const img *b, const img *mask);
 
-/* The same after a was multiplied by the factor with which it is least. */
+/* Returns the same after a was multiplied by the factor with which it is least. */
 double eval_mse_scale_free(const img *a, const img *b, const img *mask);
 
 /* Mean angle in degrees between unit vectors (3 channels) over the mask's pixels; 0 for an empty mask. */

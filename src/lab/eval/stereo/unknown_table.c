@@ -46,7 +46,7 @@ static status choose(const merlin_capture *all, int count, merlin_capture *out)
     return out->picture && out->light ? OK : fail(MERLIN_NO_MEMORY, "no memory for %d pictures", count);
 }
 
-/* What is compared with the truth; without albedo where a solver's has another meaning. */
+/* Maps to compare with the truth; without albedo where a solver's has another meaning. */
 typedef struct solution {
     img normal, albedo;
 } solution;
