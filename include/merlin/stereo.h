@@ -141,7 +141,9 @@ typedef struct merlin_surface {
                             * camera far away; each separate piece of the mask has its own distance */
     merlin_image residual; /* 1 channel, root mean square residual of the fit, relative to it; of one photograph the
                             * root mean square angle of the subsets' normals to their mean, in degrees */
-    merlin_image mask;     /* 1 channel, 0 or 1 */
+    merlin_image spread; /* 1 channel, standard error of the normals in degrees, by leaving out single pictures: near 0
+                          * where all of them agree, 90 where too few tell; MERLIN_STEREO_LS: no data */
+    merlin_image mask;   /* 1 channel, 0 or 1 */
     merlin_camera camera;
     merlin_stereo_method method; /* method that was used */
     merlin_light

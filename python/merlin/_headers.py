@@ -57,7 +57,7 @@ Timing = _struct("timing", [
     (name, c_double) for name in ("mask", "prepare", "choose", "compile", "network", "upsample")])
 Crop = _struct("maps.crop", [("x", c_int), ("y", c_int), ("side", c_int)])
 Mended = _struct("maps.mended", [(name, c_float) for name in ("normal", "albedo", "roughness", "depth")])
-MAP_NAMES = ("albedo", "normal", "roughness", "depth", "mask", "photo", "reconstruction")
+MAP_NAMES = ("albedo", "normal", "roughness", "depth", "mask", "photo", "reconstruction", "spread")
 Maps = _struct("maps", [(name, Image) for name in MAP_NAMES] + [
     ("crop", Crop), ("size", c_int), ("gain", c_float), ("burnt_out", c_float), ("mask_source", c_int),
     ("has_environment", c_int), ("environment", floats9x3), ("light", FoundLight), ("mask_confidence", c_float),
@@ -148,7 +148,7 @@ RelitPhoto = _struct("relit_photo", [
     ("pixels_left", c_size_t), ("spread", c_double), ("angle", c_double)])
 StereoSeconds = _struct("surface.seconds", [
     (name, c_double) for name in ("read", "solve", "integrate", "total")])
-SURFACE_NAMES = ("normal", "albedo", "depth", "residual", "mask")
+SURFACE_NAMES = ("normal", "albedo", "depth", "residual", "spread", "mask")
 Surface = _struct("surface", [(name, Image) for name in SURFACE_NAMES] + [
     ("camera", Camera), ("method", c_int), ("lights", POINTER(Light)), ("light_count", c_int), ("lights_near", c_int),
     ("strengths_unsure", c_int), ("distance_unsure", c_int), ("lights_unsure", c_int), ("warnings", Warnings),

@@ -161,6 +161,7 @@ def test_a_capture_makes_maps(sphere, model):
     maps = capture.maps(model, views=1, progress=lambda stage, _share: stages.append(stage))
     assert np.linalg.norm(maps.further_light) == pytest.approx(1, abs=1e-3)
     assert maps.photographs == len(pictures) and maps.refined and "estimating" in stages
+    assert maps.spread is not None and 0 < maps.spread[inside].mean() < 30
     assert (maps.normal * normal)[inside].sum(axis=1).mean() > np.cos(np.radians(11))
     with pytest.warns(merlin.MerlinWarning, match="fewer than 7 pictures"):
         few = merlin.Capture("unknown", mask=inside)

@@ -83,4 +83,11 @@ static inline vec3 vec3_lerp(vec3 a, vec3 b, real t)
     return vec3_fma(vec3_scale(a, 1 - t), t, b);
 }
 
+/* Returns the angle between vectors of any lengths in degrees; 0 if one is zero. By atan2, as the arc cosine of the dot
+ * product loses all precision near zero. */
+static inline double vec3_angle(vec3 a, vec3 b)
+{
+    return atan2((double)vec3_length(vec3_cross(a, b)), (double)vec3_dot(a, b)) * (180 / 3.14159265358979323846);
+}
+
 #endif

@@ -77,9 +77,8 @@ static status find_capture(const char *folder, bool *holds)
 status check_replaced(const char *folder, bool meshes)
 {
     static const char *const own[] = {"maps.exr", "report.json", NULL};
-    static const char *const maps[] = {"mask.png",           "normal.png",   "albedo.png",
-                                       "roughness.png",      "depth.png",    "error.png",
-                                       "reconstruction.png", "overview.png", NULL};
+    static const char *const maps[] = {"mask.png",  "normal.png",         "albedo.png",   "roughness.png",  "depth.png",
+                                       "error.png", "reconstruction.png", "overview.png", "confidence.png", NULL};
     static const char *const surface[] = {"mesh.ply", "mesh.obj", "mesh.glb", NULL};
     if (!file_is_folder(folder) || first_in(folder, own)) return OK;
     const char *name = first_in(folder, maps);

@@ -57,6 +57,12 @@ static status refit_depth(merlin_maps *maps)
     return s;
 }
 
+static void take_spread(const img *spread, merlin_maps *maps)
+{
+    for (size_t i = 0; i < img_value_count(spread) && maps->spread.data; i++)
+        if (maps->mask.data[i] >= 0.5f) maps->spread.data[i] = spread->data[i];
+}
+
 static status take(const merlin_surface *found, int pictures, merlin_maps *maps)
 {
     for (size_t i = 0; i < img_value_count(&maps->mask); i++) {
@@ -65,6 +71,7 @@ static status take(const merlin_surface *found, int pictures, merlin_maps *maps)
         if (vec3_dot(n, n) > 0) vec3_put(n, maps->normal.data + 3 * i);
     }
     img_free(&maps->reconstruction);
+    if (found->spread.data) take_spread(&found->spread, maps);
     /* each pixel of fewer pictures is dark in too many of them to tell its albedo better than a network guesses it */
     if (pictures >= PST_FEWEST_UNKNOWN) measured_albedo_take(&found->albedo, maps);
     maps->refined = 1;

@@ -11,7 +11,6 @@
 #include "photo_stereo/relit.h"
 #include "photo_stereo/subsets.h"
 #include "stereo/integrate/integrate.h"
-#include "stereo/integrate/surface_error.h"
 
 enum { LARGEST_SIDE = 512 };
 
@@ -67,7 +66,7 @@ static float average(const work *w, size_t pixel, float *mean)
     vec3_put(sum, mean);
     float square = 0;
     for (int i = 0; i < SUBSETS; i++) {
-        float a = (float)normal_angle(normal_at(&w->normals[i], pixel), sum);
+        float a = (float)vec3_angle(normal_at(&w->normals[i], pixel), sum);
         square += a * a / SUBSETS;
     }
     return sqrtf(square);
@@ -89,7 +88,7 @@ static void average_all(const work *w, merlin_surface *out)
         if (out->mask.data[i] <= 0.5f) continue;
         out->residual.data[i] = average(w, i, out->normal.data + 3 * i);
         spread += (double)out->residual.data[i];
-        angle += normal_angle(normal_at(&out->normal, i), normal_at(&w->relit.maps.normal, i));
+        angle += vec3_angle(normal_at(&out->normal, i), normal_at(&w->relit.maps.normal, i));
         r->pixels_left += keep_normal(w, i, out);
         r->pixels++;
     }

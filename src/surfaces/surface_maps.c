@@ -18,6 +18,7 @@ merlin_status merlin_maps_from_surface(const merlin_surface *surface, merlin_map
     if (s == OK) s = img_copy(&out->normal, &surface->normal);
     if (s == OK) s = img_copy(&out->depth, &surface->depth);
     if (s == OK) s = img_copy(&out->mask, &surface->mask);
+    if (s == OK && surface->spread.data) s = img_copy(&out->spread, &surface->spread);
     if (s == OK) s = img_new(&out->roughness, width, height, 1);
     if (s == OK) s = img_new(&out->photo, width, height, 3);
     if (s == OK) s = maps_place_captured(out, surface->camera.focal);

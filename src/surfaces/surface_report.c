@@ -31,7 +31,12 @@ static void put_lights(cJSON *report, const merlin_surface *s)
     }
 }
 
-static void put_captured(cJSON *report, const merlin_surface *s, const merlin_statistics *residual)
+/* Statistics of maps. */
+typedef struct figures {
+    merlin_statistics residual, spread;
+} figures;
+
+static void put_captured(cJSON *report, const merlin_surface *s, const figures *of)
 {
     json_put_number(report, "seconds_read", s->seconds.read);
     json_put_text(report, "method", merlin_stereo_method_name(s->method));
@@ -39,7 +44,8 @@ static void put_captured(cJSON *report, const merlin_surface *s, const merlin_st
     json_put_number(report, "width", s->mask.width);
     json_put_number(report, "height", s->mask.height);
     json_put_number(report, "channels", s->albedo.channels);
-    put_statistics(report, "residual", residual);
+    put_statistics(report, "residual", &of->residual);
+    if (s->spread.data) put_statistics(report, "normal_spread_degrees", &of->spread);
     if (s->normal_error.count) put_statistics(report, "normal_error_degrees", &s->normal_error);
     if (s->lights_in_order) json_put_bool(report, "lights_in_order", true);
     if (s->lights) put_lights(report, s);
@@ -70,14 +76,14 @@ static void put_warnings(cJSON *report, const char *input, const merlin_surface 
     if (s->skipped.count) skipped_json(&s->skipped, input ? input : ".", json_put_array(report, "skipped"));
 }
 
-static char *compose(const merlin_surface *s, const char *input, const merlin_statistics *residual, float albedo_scale)
+static char *compose(const merlin_surface *s, const char *input, const figures *of, float albedo_scale)
 {
     cJSON *report = report_begin(NULL);
     if (input) json_put_text(report, "input", input);
     if (s->relit.lights)
         put_relit(report, &s->relit);
     else
-        put_captured(report, s, residual);
+        put_captured(report, s, of);
     json_put_number(report, "albedo_scale", (double)albedo_scale);
     json_put_text(report, "error_map", error_map_name(s));
     json_put_number(report, "error_map_white", (double)error_map_white(s));
@@ -92,13 +98,14 @@ static char *compose(const merlin_surface *s, const char *input, const merlin_st
 merlin_status merlin_surface_report(const merlin_surface *surface, const char *input, char **text)
 {
     float scale = 1;
-    merlin_statistics residual;
+    figures of;
     if (text) *text = NULL;
     status s = api_needs(__func__, surface && text);
     if (s == OK) s = pst_surface_check(surface);
     if (s == OK) s = pst_albedo_scale(&surface->albedo, &surface->mask, &scale);
-    if (s == OK) s = surface_residual(surface, &residual);
+    if (s == OK) s = surface_statistics(surface, &surface->residual, &of.residual);
+    if (s == OK) s = surface_statistics(surface, &surface->spread, &of.spread);
     if (s != OK) return s;
-    *text = compose(surface, input, &residual, scale);
+    *text = compose(surface, input, &of, scale);
     return *text ? OK : fail(MERLIN_NO_MEMORY, "no memory for a report");
 }

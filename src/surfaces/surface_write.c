@@ -40,12 +40,14 @@ static status write_exr(const void *context, const char *path)
         {"depth.Z", j->surface->depth.data, 1, true},
         {"mask.A", j->surface->mask.data, 1, false},
         {"error.Y", j->surface->residual.data, 1, false},
+        {"spread.Y", j->surface->spread.data, 1, false},
     };
+    const size_t count = sizeof channels / sizeof channels[0] - (j->surface->spread.data ? 0 : 1);
     const exr_attribute attributes[] = {exr_text("merlinError", error_map_name(j->surface)),
                                         exr_number("merlinFocal", j->surface->camera.focal),
                                         maps_picture_size(j->surface->mask.width, j->surface->mask.height)};
-    return exr_write(path, j->surface->mask.width, j->surface->mask.height, channels,
-                     sizeof channels / sizeof channels[0], attributes, sizeof attributes / sizeof attributes[0]);
+    return exr_write(path, j->surface->mask.width, j->surface->mask.height, channels, count, attributes,
+                     sizeof attributes / sizeof attributes[0]);
 }
 
 static status write_normal(const void *context, const char *path)
@@ -131,6 +133,12 @@ static status write_overview(const void *context, const char *path)
     return s;
 }
 
+static status write_confidence(const void *context, const char *path)
+{
+    const job *j = context;
+    return map_write_confidence(path, &j->surface->spread, &j->surface->mask);
+}
+
 static status write_report(const void *context, const char *path)
 {
     const job *j = context;
@@ -145,9 +153,15 @@ static status write_report(const void *context, const char *path)
 
 /* Output files, the slowest first, so that two processors finish together. */
 static const folder_file outputs[] = {
-    {"maps.exr", write_exr},      {"overview.png", write_overview}, {"normal.png", write_normal},
-    {"albedo.png", write_albedo}, {"depth.png", write_depth},       {"error.png", write_error},
-    {"mask.png", write_mask},     {"report.json", write_report},
+    {"maps.exr", write_exr},
+    {"overview.png", write_overview},
+    {"normal.png", write_normal},
+    {"albedo.png", write_albedo},
+    {"depth.png", write_depth},
+    {"error.png", write_error},
+    {"mask.png", write_mask},
+    {"report.json", write_report},
+    {"confidence.png", write_confidence}, /* the last one */
 };
 enum { OUTPUTS = sizeof outputs / sizeof outputs[0] };
 
@@ -160,13 +174,14 @@ merlin_status merlin_surface_write(const merlin_surface *surface, const char *in
     if (s == OK) s = pst_surface_check(surface);
     if (s != OK) return s;
     job j = {.surface = surface, .input = input};
+    const size_t count = surface->spread.data ? OUTPUTS : OUTPUTS - 1;
     const folder_batch files = {.files = outputs,
-                                .count = OUTPUTS,
+                                .count = count,
                                 .job = &j,
                                 .folder = folder,
                                 .in_place = by->in_place,
                                 .watch = {by->progress, by->progress_context, by->stop},
-                                .steps = OUTPUTS};
+                                .steps = count};
     watch_tell(&files.watch, "writing", 0);
     s = surface_albedo(surface, &j.albedo);
     if (s == OK) s = folder_batch_write(&files);

@@ -21,7 +21,7 @@ echo "the pictures of a folder are seen together by a model of any light"
 mkdir folder two
 cp dome/dome_00[0-7].png dome/mask.* folder
 succeeds '"photographs":8' stereo folder --json -o together
-present together/{maps.exr,albedo.png,normal.png,roughness.png,depth.png,mask.png,overview.png,report.json,mesh.glb}
+present together/{maps.exr,confidence.png,albedo.png,normal.png,roughness.png,depth.png,mask.png,overview.png,report.json,mesh.glb}
 succeeds '"photographs":8' stereo folder --method universal --json --mesh a.obj --html -o together
 present together/viewer.html a.obj
 succeeds relit "$MERLIN" relight together --model "$any" --light 0.7,0.2,-0.4 -o relit
@@ -42,7 +42,12 @@ echo "pictures named one by one"
 succeeds '"photographs":3' stereo dome/dome_00[0-2].png --mask dome/mask.webp --json -o three
 present three/maps.exr three/mesh.glb
 succeeds '^dome/dome_000.png: ' stereo dome/dome_000.png dome/dome_001.png
-present dome/dome_000.merlin/stereo/maps.exr
+present dome/dome_000.merlin/stereo/{maps.exr,confidence.png}
+mkdir one
+cp dome/dome_000.png dome/mask.webp one
+succeeds '"files":\["one/stereo/albedo.png","one/stereo/depth.png"' stereo one --method universal --json
+present one/stereo/maps.exr
+absent one/stereo/confidence.png
 refuses 2 'folder is a folder, which comes alone' stereo dome/dome_000.png folder
 refuses 2 'standard input, which comes alone' stereo dome/dome_000.png -
 refuses 1 'there is no picture absent.png' stereo dome/dome_000.png absent.png

@@ -21,6 +21,9 @@ absent dome/dome_006.png
 [ "$(wc -l <dome/dome.lp)" -eq 7 ] || complain "dome.lp is not a count and six lines"
 succeeds '"pictures": *6' stereo dome --method ls --json
 present "${files[@]/#/dome/stereo/}" dome/stereo/mesh.{ply,obj,mtl,png,glb}
+absent dome/stereo/confidence.png
+succeeds normal_spread_degrees stereo dome --json -o robust
+present robust/confidence.png
 LC_ALL=C grep -qaP 'depth\.Z\x00\x02\x00\x00\x00' dome/stereo/maps.exr || complain "maps.exr has no depth of 32 bits"
 
 echo "a dome's list lights other pictures, and that is said"

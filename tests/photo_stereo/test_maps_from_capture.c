@@ -14,6 +14,7 @@
 
 #include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
+#include "base/file.h"
 #include "merlin/surface.h"
 #include "relief.h"
 
@@ -123,9 +124,37 @@ static void one_picture_is_a_photograph(void **state)
     assert_memory_equal(maps.normal.data, alone.normal.data, sizeof(float) * 3 * SIZE * SIZE);
     assert_memory_equal(maps.albedo.data, alone.albedo.data, sizeof(float) * 3 * SIZE * SIZE);
     assert_int_equal(maps.doubts, alone.doubts);
+    assert_null(maps.spread.data);
     merlin_image_free(&photo);
     merlin_maps_free(&maps);
     merlin_maps_free(&alone);
+    capture_drop(&c);
+}
+
+/* The spread comes with several pictures, stays in the file, and is a part of its folder. */
+static void the_spread_is_kept(void **state)
+{
+    const fixture *f = *state;
+    const merlin_params p = quick();
+    merlin_capture c;
+    merlin_maps maps, read;
+    double sum = 0;
+    picture_sphere(5, 3, &c);
+    if (merlin_maps_from_capture(f->any, &c, &p, &maps) != MERLIN_OK) fail_msg("%s", merlin_error());
+    const char *folder = scratch_path("several");
+    if (merlin_maps_write(f->any, &maps, NULL, folder) != MERLIN_OK) fail_msg("%s", merlin_error());
+    assert_true(file_exists(scratch_path("several/confidence.png")));
+    if (merlin_maps_read(folder, &read) != MERLIN_OK) fail_msg("%s", merlin_error());
+    assert_non_null(read.spread.data);
+    for (int i = 0; i < SIZE * SIZE; i++) {
+        const float spread = maps.spread.data[i];
+        assert_true(spread >= 0 && spread <= 90 && (spread == 0 || maps.mask.data[i] > 0));
+        assert_float_equal(read.spread.data[i], spread, 1e-3 * (double)spread + 1e-6);
+        sum += (double)spread;
+    }
+    assert_true(sum > 0);
+    merlin_maps_free(&maps);
+    merlin_maps_free(&read);
     capture_drop(&c);
 }
 
@@ -219,6 +248,7 @@ int main(void)
         cmocka_unit_test(files_are_heeded),
         cmocka_unit_test(few_pictures_are_the_networks_alone),
         cmocka_unit_test(one_picture_is_a_photograph),
+        cmocka_unit_test(the_spread_is_kept),
         cmocka_unit_test(refined_maps_are_whole),
         cmocka_unit_test(what_it_cannot_take_is_refused),
         cmocka_unit_test(an_object_is_searched_for_where_all_is_bright),

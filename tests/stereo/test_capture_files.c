@@ -23,8 +23,9 @@ static void results_beside_the_pictures_are_none(void **state)
 {
     (void)state;
     three_pictures(IMG_LINEAR16);
-    static const char *const results[] = {"normal.png",   "albedo.png", "depth.png", "error.png",
-                                          "overview.png", "mesh.png",   "maps.exr",  "reconstruction.png"};
+    static const char *const results[] = {"normal.png", "albedo.png",         "depth.png",
+                                          "error.png",  "overview.png",       "mesh.png",
+                                          "maps.exr",   "reconstruction.png", "confidence.png"};
     for (size_t i = 0; i < sizeof results / sizeof *results; i++)
         write_flat(results[i], 6, 4, 3, 0.5f, IMG_SRGB8);
     merlin_capture c;

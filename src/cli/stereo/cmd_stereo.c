@@ -74,7 +74,8 @@ static const char help[] =
     "  -t, --threads N      how many threads work (default: one a processor)\n"
     "  -q, --quiet          no other output than errors\n"
     "  -h, --help           this text\n\n"
-    "Writes maps.exr, normal.png, albedo.png, depth.png, mask.png, error.png, overview.png, report.json and meshes.\n"
+    "Writes maps.exr, normal.png, albedo.png, depth.png, mask.png, error.png, overview.png, report.json,\n"
+    "confidence.png (dark where normals depend on single pictures; not with ls) and meshes.\n"
     "Depth and meshes are in the unit of the lights' positions with --near; from afar they are in pixels (.glb and\n"
     ".usda have a scale by which the picture is one unit large).\n";
 

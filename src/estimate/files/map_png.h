@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Maps as 16-bit PNG for people and other programs, black outside the object.
+/* Maps as PNG for people and other programs, black outside the object.
  *
  *     status s = map_write_normals("normal.png", &normal, &mask);
  *     if (s == OK) s = map_write_depths("depth.png", &depth, &mask);
@@ -14,5 +14,10 @@ status map_write_normals(const char *path, const img *normal, const img *mask);
 /* Writes depths with near ones bright: those of pixels covered by half or more, nearest to farthest, become 1 down to
  * 0.05. depth: 1 channel, of any unit and sign. */
 status map_write_depths(const char *path, const img *depth, const img *mask);
+/* Writes how sure normals are: a spread (1 channel) of 0 degrees is white, of 30 and more as black as what is outside
+ * the object. */
+status map_write_confidence(const char *path, const img *spread, const img *mask);
+/* Returns that value of a spread, in [0, 1]. */
+float map_confidence(float spread);
 
 #endif

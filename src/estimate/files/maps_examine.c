@@ -30,11 +30,13 @@ static const range of_estimates[] = {
     {"depth.", 0.0499f, 20.1f, 1e-6f, 100,
      "the depth in distances of the object, about 1, positive away from the "
      "camera"},
+    {"spread.", -0.1f, 90.1f, -1, 200, "the spread of the normals in degrees"},
     {NULL, 0, 0, 0, 0, NULL},
 };
 /* Ranges of a capture's maps: albedo and depth are in any unit, and depth from distant lights has any zero. */
 static const range of_captures[] = {
     {"albedo.", -FLT_MAX, FLT_MAX, 0, FLT_MAX, "the linear albedo, which is not negative"},
+    {"spread.", -0.1f, 90.1f, -1, 200, "the spread of the normals in degrees"},
     {NULL, 0, 0, 0, 0, NULL},
 };
 

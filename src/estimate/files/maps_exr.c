@@ -19,7 +19,7 @@
 #include "image/read/read.h"
 #include "model/model.h"
 
-enum { CHANNELS = 12, IMAGES = 6, PHOTO = 5 };
+enum { CHANNELS = 13, IMAGES = 7, PHOTO = 5, SPREAD = 6 };
 /* Largest network size in a file: earlier versions allowed sizes beyond NETWORK_SIZE. */
 enum { LARGEST_WRITTEN = 1024 };
 
@@ -30,12 +30,12 @@ typedef struct layer {
 } layer;
 
 static const layer layers[CHANNELS] = {
-    {"albedo.R", 0, 0}, {"albedo.G", 0, 1},    {"albedo.B", 0, 2},    {"normal.X", 1, 0},
-    {"normal.Y", 1, 1}, {"normal.Z", 1, 2},    {"roughness.Y", 2, 0}, {"depth.Z", 3, 0},
-    {"mask.A", 4, 0},   {"photo.R", PHOTO, 0}, {"photo.G", PHOTO, 1}, {"photo.B", PHOTO, 2},
+    {"albedo.R", 0, 0},    {"albedo.G", 0, 1},    {"albedo.B", 0, 2},      {"normal.X", 1, 0}, {"normal.Y", 1, 1},
+    {"normal.Z", 1, 2},    {"roughness.Y", 2, 0}, {"depth.Z", 3, 0},       {"mask.A", 4, 0},   {"photo.R", PHOTO, 0},
+    {"photo.G", PHOTO, 1}, {"photo.B", PHOTO, 2}, {"spread.Y", SPREAD, 0},
 };
 
-static const int image_channels[IMAGES] = {3, 3, 1, 1, 1, 3};
+static const int image_channels[IMAGES] = {3, 3, 1, 1, 1, 3, 1};
 /* Images that photometric stereo does not find. */
 static const bool of_photographs[IMAGES] = {[2] = true, [PHOTO] = true};
 
@@ -68,11 +68,12 @@ static exr_attribute attribute_of_light(const merlin_found_light *l)
 
 status maps_write_exr(const merlin_maps *maps, const char *path)
 {
-    const merlin_image *images[IMAGES] = {&maps->albedo, &maps->normal, &maps->roughness,
-                                          &maps->depth,  &maps->mask,   &maps->photo};
+    const merlin_image *images[IMAGES] = {&maps->albedo, &maps->normal, &maps->roughness, &maps->depth,
+                                          &maps->mask,   &maps->photo,  &maps->spread};
     exr_channel channels[CHANNELS];
+    const size_t channel_count = maps->spread.data ? CHANNELS : CHANNELS - 1;
     bool full = outgrows_half(&maps->photo);
-    for (int i = 0; i < CHANNELS; i++)
+    for (size_t i = 0; i < channel_count; i++)
         channels[i] = (exr_channel){layers[i].name, images[layers[i].image]->data + layers[i].channel,
                                     images[layers[i].image]->channels, full && layers[i].image == PHOTO};
     exr_attribute square = {.name = "merlinCrop", .count = 3};
@@ -98,7 +99,7 @@ status maps_write_exr(const merlin_maps *maps, const char *path)
     size_t count = ALWAYS;
     if (maps->has_environment) attributes[count++] = environment;
     if (maps->light.known) attributes[count++] = attribute_of_light(&maps->light);
-    return exr_write(path, maps->albedo.width, maps->albedo.height, channels, CHANNELS, attributes, count);
+    return exr_write(path, maps->albedo.width, maps->albedo.height, channels, channel_count, attributes, count);
 }
 
 /* ---- attributes ---- */
@@ -245,6 +246,7 @@ static status place_images(const exr_file *f, merlin_image *const images[IMAGES]
     status s = OK;
     bool whole = seen.left == 0 && seen.top == 0 && seen.width == exr_width(f) && seen.height == exr_height(f);
     for (int i = 0; i < IMAGES && s == OK && !whole; i++) {
+        if (!images[i]->data) continue;
         img m = *images[i];
         s = exr_place(&seen, &m);
         *images[i] = m;
@@ -256,6 +258,7 @@ static status new_images(const exr_file *f, merlin_image *const images[IMAGES])
 {
     status s = OK;
     for (int i = 0; i < IMAGES && s == OK; i++) {
+        if (i == SPREAD && !exr_has_channel(f, layers[CHANNELS - 1].name)) continue;
         img m = {0};
         s = img_new(&m, exr_width(f), exr_height(f), image_channels[i]);
         if (s == OK) *images[i] = m;
@@ -268,7 +271,7 @@ static size_t list_channels(bool photographed, merlin_image *const images[IMAGES
 {
     size_t count = 0;
     for (int i = 0; i < CHANNELS; i++)
-        if (photographed || !of_photographs[layers[i].image])
+        if (images[layers[i].image]->data && (photographed || !of_photographs[layers[i].image]))
             targets[count++] = (exr_target){layers[i].name, images[layers[i].image]->data + layers[i].channel,
                                             image_channels[layers[i].image]};
     return count;
@@ -276,8 +279,8 @@ static size_t list_channels(bool photographed, merlin_image *const images[IMAGES
 
 status maps_read_layers(exr_file *f, const char *path, bool photographed, merlin_maps *maps)
 {
-    merlin_image *const images[IMAGES] = {&maps->albedo, &maps->normal, &maps->roughness,
-                                          &maps->depth,  &maps->mask,   &maps->photo};
+    merlin_image *const images[IMAGES] = {&maps->albedo, &maps->normal, &maps->roughness, &maps->depth,
+                                          &maps->mask,   &maps->photo,  &maps->spread};
     exr_target targets[CHANNELS];
     status s = check_picture(f, path);
     if (s == OK) s = new_images(f, images);
@@ -290,7 +293,7 @@ status maps_read_layers(exr_file *f, const char *path, bool photographed, merlin
 status maps_check_values(const char *where, const merlin_maps *maps)
 {
     merlin_maps m = *maps;
-    merlin_image *const images[IMAGES] = {&m.albedo, &m.normal, &m.roughness, &m.depth, &m.mask, &m.photo};
+    merlin_image *const images[IMAGES] = {&m.albedo, &m.normal, &m.roughness, &m.depth, &m.mask, &m.photo, &m.spread};
     exr_target targets[CHANNELS];
     status s = maps_look_through(where, targets, list_channels(true, images, targets), maps);
     return s == OK ? maps_check_crop(where, true, maps) : s;
@@ -302,6 +305,8 @@ void maps_tidy(merlin_maps *maps)
     surface_tidy(&all);
     img photo = maps->photo;
     img_zero_invalid(&photo);
+    for (size_t i = 0; maps->spread.data && i < img_value_count(&maps->mask); i++)
+        maps->spread.data[i] = maps->mask.data[i] > 0 ? clamp(maps->spread.data[i], 0, 90) : 0;
 }
 
 status maps_read_photographed(exr_file *f, const char *path, merlin_maps *maps)

@@ -58,6 +58,10 @@ static void put_statistics(cJSON *root, const merlin_maps *maps)
     }
     put_range(o, "roughness", &roughness);
     put_range(o, "depth", &depth);
+    if (maps->spread.data) {
+        const range spread = range_of(maps, &maps->spread, 0);
+        put_range(o, "normal_spread", &spread);
+    }
     json_put_number(o, "object_pixels", (double)depth.count);
 }
 

@@ -76,6 +76,13 @@ static status write_depth(const void *context, const char *path)
     return map_write_depths(path, &depth, &mask);
 }
 
+static status write_confidence(const void *context, const char *path)
+{
+    const job *j = context;
+    img spread = j->maps->spread, mask = j->maps->mask;
+    return map_write_confidence(path, &spread, &mask);
+}
+
 static status write_report(const void *context, const char *path)
 {
     const job *j = context;
@@ -104,9 +111,14 @@ static const folder_file outputs[] = {
     {"normal.png", write_normal},       {"reconstruction.png", write_reconstruction},
     {"albedo.png", write_albedo},       {"depth.png", write_depth},
     {"roughness.png", write_roughness}, {"mask.png", write_mask},
-    {"report.json", write_report},
+    {"report.json", write_report},      {"confidence.png", write_confidence}, /* the last one: not of one photograph */
 };
 enum { OUTPUTS = sizeof outputs / sizeof outputs[0] };
+
+static size_t outputs_of(const merlin_maps *maps)
+{
+    return maps->spread.data ? OUTPUTS : OUTPUTS - 1;
+}
 
 static status write_maps(merlin_model *model, const merlin_maps *maps, const merlin_write_params *by,
                          const char *folder)
@@ -115,12 +127,12 @@ static status write_maps(merlin_model *model, const merlin_maps *maps, const mer
     if (!j) return fail(MERLIN_NO_MEMORY, "no memory to write %s", folder);
     j->maps = maps;
     const folder_batch files = {.files = outputs,
-                                .count = OUTPUTS,
+                                .count = outputs_of(maps),
                                 .job = j,
                                 .folder = folder,
                                 .in_place = by->in_place,
                                 .watch = {by->progress, by->progress_context, by->stop},
-                                .steps = OUTPUTS + 1};
+                                .steps = outputs_of(maps) + 1};
     watch_tell(&files.watch, "writing", 0);
     /* before the files are written in parallel, as the network uses all processors itself */
     network *n = model_network(model, maps, MERLIN_BY_BRDF);

@@ -10,8 +10,8 @@
 void merlin_maps_free(merlin_maps *maps)
 {
     if (!maps) return;
-    merlin_image *images[] = {&maps->albedo, &maps->normal, &maps->roughness,     &maps->depth,
-                              &maps->mask,   &maps->photo,  &maps->reconstruction};
+    merlin_image *images[] = {&maps->albedo, &maps->normal, &maps->roughness,      &maps->depth,
+                              &maps->mask,   &maps->photo,  &maps->reconstruction, &maps->spread};
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
         merlin_image_free(images[i]);
     free(maps->noticed);

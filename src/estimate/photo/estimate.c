@@ -38,7 +38,7 @@ typedef struct work {
     img low_photo, low_mask;
     network_estimation low;
     surface full;
-    img reconstruction;
+    img reconstruction, spread;
     light_cues cues;
     watch watch;  /* progress, from the params */
     double clock; /* start of the current step, in seconds */
@@ -46,7 +46,8 @@ typedef struct work {
 
 static void work_free(work *w)
 {
-    img *images[] = {&w->mask, &w->crop_photo, &w->crop_mask, &w->low_photo, &w->low_mask, &w->reconstruction};
+    img *images[] = {&w->mask,     &w->crop_photo,     &w->crop_mask, &w->low_photo,
+                     &w->low_mask, &w->reconstruction, &w->spread};
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++)
         img_free(images[i]);
     for (int i = 1; w->low_photos && i <= w->further.count; i++)
@@ -233,12 +234,21 @@ static void expose_picture(img *picture, float white)
         if (picture->data[i] != 0) picture->data[i] = clamp(picture->data[i] / white, 0, 1);
 }
 
+static status resize_spread(work *w)
+{
+    status s = surface_resize_image(&w->low.spread, &w->low_mask, &w->crop_mask, &w->spread);
+    for (size_t i = 0; s == OK && i < img_value_count(&w->spread); i++)
+        w->spread.data[i] = w->crop_mask.data[i] > 0 ? clamp(w->spread.data[i], 0, 90) : 0;
+    return s;
+}
+
 /* Makes the maps at the crop's own resolution, and renders them under the photograph's light. */
 static status refine(work *w, const merlin_found_light *light, float gain, float white, bool in_environment)
 {
     surface_encode_guide(&w->crop_photo, gain);
     status s = surface_refine(&w->low.maps, &w->crop_photo, &w->crop_mask, &w->full);
     img_free(&w->crop_photo);
+    if (s == OK && w->low.spread.data) s = resize_spread(w);
     img *picture = &w->reconstruction;
     const size_t count = 3 * (size_t)w->crop.side * (size_t)w->crop.side;
     if (light->known) {
@@ -290,6 +300,7 @@ static status place_all(work *w, merlin_maps *maps)
     if (s == OK) s = place(w, &w->full.roughness, &maps->roughness);
     if (s == OK) s = place(w, &w->full.depth, &maps->depth);
     if (s == OK) s = place(w, &w->full.mask, &maps->mask);
+    if (s == OK && w->spread.data) s = place(w, &w->spread, &maps->spread);
     return s == OK ? place(w, &w->reconstruction, &maps->reconstruction) : s;
 }
 

@@ -435,6 +435,7 @@ void network_estimation_free(network_estimation *e)
 {
     surface_free(&e->maps);
     img_free(&e->indirect);
+    img_free(&e->spread);
     img_free(&e->visibility);
 }
 

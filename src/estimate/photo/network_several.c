@@ -59,21 +59,82 @@ static status see_all(network *n, const pictures *of, int views, int (*stop)(voi
     return s;
 }
 
+/* ---- the spread of normals ---- */
+
+/* Normals from two halves of the photographs, not unit. */
+typedef struct halves {
+    img normal[2];
+} halves;
+
+static status halves_new(int size, halves *out)
+{
+    status s = OK;
+    for (int half = 0; half < 2 && s == OK; half++)
+        s = img_new(&out->normal[half], size, size, 3);
+    return s;
+}
+
+static void halves_free(halves *h)
+{
+    for (int half = 0; half < 2; half++)
+        img_free(&h->normal[half]);
+}
+
+/* Computes half the angle between them: the standard error of the mean of two. */
+static status halves_spread(const halves *h, img *out)
+{
+    status s = img_new(out, h->normal[0].width, h->normal[0].height, 1);
+    for (size_t i = 0; s == OK && i < img_value_count(out); i++) {
+        const vec3 a = vec3_of(h->normal[0].data + 3 * i), b = vec3_of(h->normal[1].data + 3 * i);
+        out->data[i] = 0.5f * (float)vec3_angle(a, b);
+    }
+    return s;
+}
+
+/* Sees every second photograph, and the others, in one orientation. An odd one is left out, so that both halves tell as
+ * much. */
+static status see_halves(network *n, const pictures *of, img *spread)
+{
+    halves h = {0};
+    img photos[NN_LARGEST_GROUP];
+    pictures some = *of;
+    some.photos = photos;
+    some.count = of->count / 2;
+    status s = halves_new(of->mask->width, &h);
+    for (int half = 0; half < 2 && s == OK; half++) {
+        network_estimation seen = {0};
+        for (int i = 0; i < some.count; i++)
+            photos[i] = of->photos[2 * i + half];
+        s = run_view(n, &some, 0, view_outputs, &n->maps);
+        if (s == OK) s = network_take_estimation(n->maps.program, of->mask->width, &seen);
+        if (s == OK) view_add_normals(&h.normal[half], &seen.maps.normal, 0, 1);
+        network_estimation_free(&seen);
+    }
+    if (s == OK) s = halves_spread(&h, spread);
+    halves_free(&h);
+    return s;
+}
+
 /* Estimates each photograph alone, by a network of one, and averages the maps. */
 static status see_each(network *n, const pictures *of, int views, int (*stop)(void), float (*lights)[MODEL_LIGHTS],
                        network_estimation *out)
 {
     float first[MODEL_LIGHTS] = {0};
+    halves h = {0};
     status s = view_mean_new(&n->config, of->mask->width, out);
+    if (s == OK) s = halves_new(of->mask->width, &h);
     for (int i = 0; i < of->count && s == OK; i++) {
         network_estimation one = {0};
         s = network_see(n, &of->photos[i], of->mask, of->how, views, stop, &one);
         if (s == OK && lights) memcpy(lights[i], one.lights, sizeof lights[i]);
         if (s == OK) view_mean_add(out, &one, 0, 1.0f / (float)of->count);
+        if (s == OK && i / 2 < of->count / 2) view_add_normals(&h.normal[i % 2], &one.maps.normal, 0, 1);
         if (i == 0) memcpy(first, one.lights, sizeof first);
         network_estimation_free(&one);
     }
     memcpy(out->lights, first, sizeof out->lights);
+    if (s == OK && of->count > 1) s = halves_spread(&h, &out->spread);
+    halves_free(&h);
     return s;
 }
 
@@ -82,6 +143,7 @@ static status see_together(network *n, const pictures *of, int views, int (*stop
 {
     pthread_mutex_lock(&n->lock);
     status s = see_all(n, of, views, stop, lights, out);
+    if (s == OK && of->count > 1) s = see_halves(n, of, &out->spread);
     pthread_mutex_unlock(&n->lock);
     return s;
 }

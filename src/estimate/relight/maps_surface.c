@@ -11,17 +11,16 @@
 
 status maps_check(const merlin_maps *maps)
 {
-    enum { IMAGES = 7, RECONSTRUCTION = 6 };
-    const merlin_image *images[IMAGES] = {&maps->albedo, &maps->normal, &maps->roughness,     &maps->depth,
-                                          &maps->mask,   &maps->photo,  &maps->reconstruction};
-    const int channels[IMAGES] = {3, 3, 1, 1, 1, 3, 3};
-    int count =
-        maps->reconstruction.data ? IMAGES : RECONSTRUCTION; /* maps read from a folder have no reconstruction */
+    enum { IMAGES = 8, NEEDED = 6 }; /* maps from a folder have no reconstruction, those of one photograph no spread */
+    const merlin_image *images[IMAGES] = {&maps->albedo, &maps->normal, &maps->roughness,      &maps->depth,
+                                          &maps->mask,   &maps->photo,  &maps->reconstruction, &maps->spread};
+    const int channels[IMAGES] = {3, 3, 1, 1, 1, 3, 3, 1};
     bool sound = crop_is_sound(crop_of(maps)) && maps->size >= NETWORK_LEAST_SIZE && maps->size <= NETWORK_SIZE &&
                  maps->size % MODEL_SIZE_MULTIPLE == 0 && exposure_is_sound(maps->gain);
-    for (int i = 0; i < count; i++)
-        sound &= images[i]->data && images[i]->channels == channels[i] && images[i]->width == maps->albedo.width &&
-                 images[i]->height == maps->albedo.height;
+    for (int i = 0; i < IMAGES; i++)
+        sound &= (i >= NEEDED && !images[i]->data) ||
+                 (images[i]->data && images[i]->channels == channels[i] && images[i]->width == maps->albedo.width &&
+                  images[i]->height == maps->albedo.height);
     return sound ? OK : fail(MERLIN_WRONG_USE, "these maps are empty or incomplete");
 }
 

@@ -22,9 +22,9 @@ static bool has_stem(const char *name, const char *stem)
 
 static bool is_beside_the_capture(const char *name)
 {
-    static const char *const others[] = {"ambient", "normal", "normals",     "normal_gt",     "albedo",   "depth",
-                                         "relit",   "orbit",  "calibration", "roughness",     "overview", "error",
-                                         "mesh",    "maps",   "mask",        "reconstruction"};
+    static const char *const others[] = {"ambient",    "normal", "normals",     "normal_gt", "albedo",        "depth",
+                                         "relit",      "orbit",  "calibration", "roughness", "overview",      "error",
+                                         "confidence", "mesh",   "maps",        "mask",      "reconstruction"};
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
         if (has_stem(name, others[i])) return true;
     return false;

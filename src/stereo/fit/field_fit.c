@@ -10,6 +10,7 @@
 #include "stereo/algebra/matrix3.h"
 #include "stereo/fit/field_neighbours.h"
 #include "stereo/fit/near_lights.h"
+#include "stereo/fit/normal_spread.h"
 #include "stereo/fit/pixel_fit.h"
 
 /* Number of pixels that are gathered together, so that a picture's cache lines serve all of them. */
@@ -82,7 +83,7 @@ static const pst_lobe *lobe_of(const pst_field *f, const pst_shading *q)
     return q->second ? f->second : f->lobe;
 }
 
-/* Stores the albedo of each channel by the same weights, and the residual. power NULL: distant lights. */
+/* Stores the albedo of each channel by the same weights, the residual and the spread. power NULL: distant lights. */
 static void store_pixel(const fit_job *job, size_t at, const pst_lobe_data *d, const pst_shading *q, const float *power)
 {
     const pst_problem *p = job->field->problem;
@@ -109,6 +110,7 @@ static void store_pixel(const fit_job *job, size_t at, const pst_lobe_data *d, c
     memcpy(out->normal.data + 3 * at, &(float[3]){n.x, n.y, n.z}, 3 * sizeof(float));
     memcpy(out->albedo.data + at * (size_t)c->channels, albedo, (size_t)c->channels * sizeof(float));
     out->residual.data[at] = fit > 0 ? sqrtf(residual / fit) : 0;
+    out->spread.data[at] = pst_normal_spread(o, w, model, n, q->albedo);
 }
 
 /* Fits a pixel starting from the previous one, which is usually adjacent: its result is tried first, and accepted if it

@@ -57,6 +57,7 @@ void merlin_surface_free(merlin_surface *surface)
     img_free(&surface->albedo);
     img_free(&surface->depth);
     img_free(&surface->residual);
+    img_free(&surface->spread);
     img_free(&surface->mask);
     free(surface->lights);
     for (int i = 0; surface->picture_names && i < surface->picture_count; i++)

@@ -3,13 +3,6 @@
 
 #include <math.h>
 
-/* Uses atan2, as acos of the dot product loses all precision near zero. */
-double normal_angle(vec3 a, vec3 b)
-{
-    static const double DEGREES = 57.29577951308232;
-    return DEGREES * atan2((double)vec3_length(vec3_cross(a, b)), (double)vec3_dot(a, b));
-}
-
 static bool is_object(const merlin_capture *c, size_t pixel)
 {
     return c->mask.data[pixel] > 0.5f;
@@ -22,7 +15,7 @@ double normal_mean_angle(const img *normal, const merlin_capture *c, size_t *pix
     for (size_t i = 0, total = (size_t)c->width * (size_t)c->height; i < total; i++) {
         vec3 truth = vec3_of(c->normal_true.data + 3 * i);
         if (!is_object(c, i) || vec3_length(truth) < 0.5f) continue;
-        sum += normal_angle(vec3_of(normal->data + 3 * i), truth);
+        sum += vec3_angle(vec3_of(normal->data + 3 * i), truth);
         count++;
     }
     if (pixels) *pixels = count;

@@ -10,9 +10,6 @@
 
 #include "stereo/capture/capture.h"
 
-/* Returns the angle between unit vectors in degrees. */
-double normal_angle(vec3 a, vec3 b);
-
 /* Returns the mean angle in degrees to c->normal_true over the mask where the truth is known; 0 if it is not known
  * anywhere. *pixels (may be NULL) gets the number of pixels. */
 double normal_mean_angle(const img *normal, const merlin_capture *c, size_t *pixels);

@@ -3,8 +3,6 @@
 
 #include <stdlib.h>
 
-#include "stereo/integrate/surface_error.h"
-
 static void exchange(double *a, double *b)
 {
     double old = *a;
@@ -50,13 +48,15 @@ static double *values_of(const merlin_surface *s)
     return values;
 }
 
-status surface_residual(const merlin_surface *s, merlin_statistics *out)
+status surface_statistics(const merlin_surface *s, const img *map, merlin_statistics *out)
 {
+    *out = (merlin_statistics){0};
+    if (!map->data) return OK;
     double *values = values_of(s);
     size_t count = 0;
     if (!values) return MERLIN_NO_MEMORY;
     for (size_t i = 0, pixels = img_value_count(&s->mask); i < pixels; i++)
-        if (s->mask.data[i] > 0.5f) values[count++] = (double)s->residual.data[i];
+        if (s->mask.data[i] > 0.5f) values[count++] = (double)map->data[i];
     *out = summarize(values, count);
     free(values);
     return OK;
@@ -72,7 +72,7 @@ status surface_normal_error(const merlin_surface *s, const merlin_capture *c, me
     for (size_t i = 0, pixels = img_value_count(&s->mask); i < pixels; i++) {
         vec3 n = vec3_of(s->normal.data + 3 * i), t = vec3_of(c->normal_true.data + 3 * i);
         if (s->mask.data[i] <= 0.5f || !(vec3_dot(t, t) > (real)0.25)) continue;
-        values[count++] = normal_angle(n, t);
+        values[count++] = vec3_angle(n, t);
     }
     *out = summarize(values, count);
     free(values);

@@ -152,6 +152,7 @@ static status allocate(const merlin_capture *c, merlin_surface *out)
     status s = allocate_map(c, 3, &out->normal);
     if (s == OK) s = allocate_map(c, c->channels, &out->albedo);
     if (s == OK) s = allocate_map(c, 1, &out->residual);
+    if (s == OK && out->method != MERLIN_STEREO_LS) s = allocate_map(c, 1, &out->spread);
     if (s == OK) s = img_copy(&out->mask, &c->mask);
     return s;
 }

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "base/parallel.h"
+#include "stereo/fit/normal_spread.h"
 #include "stereo/integrate/poisson.h"
 
 /* Share of the mean of the object's brightest values from which on a pixel is lit; a darker one may be noise or a dark
@@ -198,6 +199,12 @@ static status fill(const img *unlit, const img *around, img *normal)
     return s;
 }
 
+static void doubt(const img *unlit, img *spread)
+{
+    for (size_t i = 0; i < img_value_count(unlit) && spread->data; i++)
+        if (unlit->data[i] > 0) spread->data[i] = PST_ANY_NORMAL;
+}
+
 status pst_unlit_fill(const pst_problem *p, merlin_surface *s)
 {
     img unlit = {0}, around = {0};
@@ -206,6 +213,7 @@ status pst_unlit_fill(const pst_problem *p, merlin_surface *s)
     if (result == OK && any) {
         result = with_neighbours(&unlit, &p->capture->mask, &around);
         if (result == OK) result = fill(&unlit, &around, &s->normal);
+        if (result == OK) doubt(&unlit, &s->spread);
     }
     img_free(&unlit);
     img_free(&around);

@@ -14,7 +14,6 @@
 #include "stereo/fit/lobe_choice.h"
 #include "stereo/fit/samples.h"
 #include "stereo/integrate/integrate.h"
-#include "stereo/integrate/surface_error.h"
 #include "stereo/methods/solve_parts.h"
 #include "stereo/uncalibrated/inflate.h"
 #include "stereo/uncalibrated/uncalibrated_parts.h"
@@ -103,7 +102,7 @@ static double aside(const pst_problem *p, const hypothesis *h)
         if (!(sure > 0)) continue;
         const vec3 middle = {0, 0, -p->capture->camera.distance};
         const vec3 found = h->depth.data ? vec3_sub(position, middle) : vec3_of(h->light[k].direction);
-        sum += sure * normal_angle(to, found);
+        sum += sure * vec3_angle(to, found);
         weights += sure;
     }
     return weights > 0 ? sum / weights : 0;

@@ -118,6 +118,7 @@ status pst_solve_few(const pst_problem *p, merlin_surface *out)
     if (s == OK) s = pst_integrate(&out->normal, &p->capture->mask, &p->capture->camera, &how, &out->depth);
     img_free(&depth);
     img_free(&bend.normal);
+    img_free(&out->spread); /* that of the pictures would not include the prior's errors, which are larger */
     out->lights = light;
     out->lights_unsure = bend.cost_of_value > unexplained;
     return s;

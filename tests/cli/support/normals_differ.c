@@ -3,8 +3,8 @@
  * degrees over the pixels that both masks hold, in two decimals. Normals are 16-bit, (n + 1)/2. */
 #include <stdio.h>
 
+#include "base/vec.h"
 #include "image/read/read.h"
-#include "stereo/integrate/surface_error.h"
 
 typedef struct result {
     img normal, mask;
@@ -40,7 +40,7 @@ static bool print_mean(const result *a, const result *b)
     size_t count = 0, pixels = img_value_count(&a->mask);
     for (size_t i = 0; i < pixels; i++) {
         if (a->mask.data[i] < 0.5f || b->mask.data[i] < 0.5f) continue;
-        sum += normal_angle(normal_of(a, i), normal_of(b, i));
+        sum += vec3_angle(normal_of(a, i), normal_of(b, i));
         count++;
     }
     if (count > 0)

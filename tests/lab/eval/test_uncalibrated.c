@@ -14,7 +14,6 @@
 #include "lab/scene/material/material.h"
 #include "relief.h"
 #include "sanitized.h"
-#include "stereo/integrate/surface_error.h"
 #include "stereo/uncalibrated/inflate.h"
 #include "stereo/uncalibrated/uncalibrated_parts.h"
 
@@ -41,7 +40,7 @@ static void an_inflated_disc_is_a_hemisphere(void **state)
     double off = 0, count = 0;
     for (int i = 0; i < SIZE * SIZE; i++) {
         if (mask.data[i] < 0.5f) continue;
-        off += normal_angle(vec3_of(normal.data + 3 * i), vec3_of(truth.data + 3 * i));
+        off += vec3_angle(vec3_of(normal.data + 3 * i), vec3_of(truth.data + 3 * i));
         count++;
     }
     assert_true(off / count < 2);
@@ -71,7 +70,7 @@ static void a_large_disc_is_inflated_as_well(void **state)
                 assert_true(*img_at(&height, x, y) == 0 && img_at(&normal, x, y)[2] == 0);
                 continue;
             }
-            off += normal_angle(vec3_of(img_at(&normal, x, y)), vec3_make(dx, dy, sqrtf(fmaxf(z2, 0))));
+            off += vec3_angle(vec3_of(img_at(&normal, x, y)), vec3_make(dx, dy, sqrtf(fmaxf(z2, 0))));
             count++;
             worst = fmaxf(worst, fabsf(*img_at(&height, x, y) - RADIUS * sqrtf(fmaxf(z2, 0))) * (z2 > 0.05f));
         }
@@ -101,7 +100,7 @@ static double light_angle(const merlin_capture *c, float distance, const merlin_
     double sum = 0;
     for (int k = 0; k < c->count; k++) {
         vec3 to = vec3_sub(vec3_of(c->light[k].position), vec3_make(0, 0, -distance));
-        sum += normal_angle(to, vec3_of(found[k].direction)) / c->count;
+        sum += vec3_angle(to, vec3_of(found[k].direction)) / c->count;
     }
     return sum;
 }
@@ -206,7 +205,7 @@ static void a_noisy_ball_is_not_turned(void **state)
     assert_int_equal(pst_inflate(&c.mask, &inflated, &height), OK);
     assert_int_equal(pst_find_distant_lights(&p, &inflated, found, &rotation), OK);
     for (int k = 0; k < 12; k++)
-        assert_true(normal_angle(vec3_of(c.light[k].direction), vec3_of(found[k].direction)) < 2); /* 0.3 on average */
+        assert_true(vec3_angle(vec3_of(c.light[k].direction), vec3_of(found[k].direction)) < 2); /* 0.3 on average */
     assert_false(rotation.unsure);
     img_free(&inflated);
     img_free(&height);

@@ -27,14 +27,14 @@ typedef struct run {
 static double aside_of(const merlin_capture *c, int i)
 {
     if (c->lighting != MERLIN_DISTANT_LIGHTS) return (double)NAN;
-    return normal_angle(vec3_of(c->light[i].direction), vec3_make(0, 0, 1));
+    return vec3_angle(vec3_of(c->light[i].direction), vec3_make(0, 0, 1));
 }
 
 static double light_error(const merlin_capture *c, int i, const merlin_found_light *found)
 {
     vec3 way = vec3_of(found->lamp);
     if (c->lighting != MERLIN_DISTANT_LIGHTS || !found->known || !(vec3_length(way) > 0)) return (double)NAN;
-    return normal_angle(vec3_of(c->light[i].direction), way);
+    return vec3_angle(vec3_of(c->light[i].direction), way);
 }
 
 static status score_maps(const merlin_capture *c, const merlin_maps *maps, picture_score *score)

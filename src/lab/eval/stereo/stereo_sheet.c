@@ -4,7 +4,6 @@
 #include <math.h>
 
 #include "image/write/figure.h"
-#include "stereo/integrate/surface_error.h"
 
 enum { COLUMNS = 2 + 2 * STEREO_ROWS };
 static const float WHITE = 45;
@@ -25,7 +24,7 @@ static status show_angle(const img *normal, const merlin_capture *c, img *out)
     for (size_t i = 0, n = (size_t)c->width * (size_t)c->height; s == OK && i < n; i++) {
         if (c->mask.data[i] <= 0.5f) continue;
         vec3 found = vec3_of(normal->data + 3 * i), truth = vec3_of(c->normal_true.data + 3 * i);
-        float angle = (float)normal_angle(found, truth) / WHITE;
+        float angle = (float)vec3_angle(found, truth) / WHITE;
         out->data[i] = fminf(angle * angle, 1); /* shown as sRGB, so that grey grows about evenly with the angle */
     }
     return s;

@@ -7,18 +7,19 @@
 #include "base/text/report.h"
 #include "lab/eval/stereo/unknown_table.h"
 
-enum { CELL = 14, ALBEDO_CELL = 17 };
+enum { CELL = 14, WIDE_CELL = 17 };
 
 static const struct {
-    const char *heading, *key, *albedo_key;
-} words[UNKNOWN_WAYS] = {{"network", "network", "network_albedo"},
-                         {"refined", "refined", "refined_albedo"},
-                         {"uncalibrated", "uncalibrated", "uncalibrated_albedo"}};
+    const char *heading, *key, *albedo_key, *surest_key;
+} words[UNKNOWN_WAYS] = {{"network", "network", "network_albedo", "network_surest_half"},
+                         {"refined", "refined", "refined_albedo", "refined_surest_half"},
+                         {"uncalibrated", "uncalibrated", "uncalibrated_albedo", "uncalibrated_surest_half"}};
 
 /* Figures of one way over the objects that have a row. */
 typedef struct row_mean {
-    double error, albedo;           /* NAN if there are none */
-    size_t objects, refused, known; /* refused: objects without a result; known: objects whose albedo is known */
+    double error, albedo, surest; /* NAN if there are none */
+    size_t objects, refused;      /* refused: objects without a result */
+    size_t known, spread;         /* objects whose albedo is known, and with a spread */
 } row_mean;
 
 static row_mean mean_of(const unknown_table *t, int row, unknown_way way)
@@ -26,15 +27,19 @@ static row_mean mean_of(const unknown_table *t, int row, unknown_way way)
     row_mean m = {0};
     for (size_t i = 0; i < t->count; i++) {
         if (unknown_row_pictures(&t->object[i], row) == 0) continue;
-        const double error = t->object[i].error[row][way], albedo = t->object[i].albedo[row][way];
+        const double error = t->object[i].error[row][way], albedo = t->object[i].albedo[row][way],
+                     surest = t->object[i].surest[row][way];
         m.objects++;
         m.refused += isnan(error);
         m.known += !isnan(albedo);
+        m.spread += !isnan(surest);
         m.error += isnan(error) ? 0 : error;
         m.albedo += isnan(albedo) ? 0 : albedo;
+        m.surest += isnan(surest) ? 0 : surest;
     }
     m.error = m.objects > m.refused ? m.error / (double)(m.objects - m.refused) : (double)NAN;
     m.albedo = m.known ? m.albedo / (double)m.known : (double)NAN;
+    m.surest = m.spread ? m.surest / (double)m.spread : (double)NAN;
     return m;
 }
 
@@ -43,6 +48,13 @@ static bool has_albedo(const unknown_table *t, unknown_way way)
 {
     for (int row = 0; row < UNKNOWN_ROWS; row++)
         if (mean_of(t, row, way).known) return true;
+    return false;
+}
+
+static bool has_spread(const unknown_table *t, unknown_way way)
+{
+    for (int row = 0; row < UNKNOWN_ROWS; row++)
+        if (mean_of(t, row, way).spread) return true;
     return false;
 }
 
@@ -62,19 +74,24 @@ static void print_row(const unknown_table *t, int row, FILE *stream)
     }
     for (int way = 0; way < UNKNOWN_WAYS; way++)
         if (has_albedo(t, (unknown_way)way))
-            fprintf(stream, "%*.2f", ALBEDO_CELL, 100 * mean_of(t, row, (unknown_way)way).albedo);
+            fprintf(stream, "%*.2f", WIDE_CELL, 100 * mean_of(t, row, (unknown_way)way).albedo);
+    for (int way = 0; way < UNKNOWN_WAYS; way++)
+        if (has_spread(t, (unknown_way)way))
+            fprintf(stream, "%*.2f", WIDE_CELL + 2, mean_of(t, row, (unknown_way)way).surest);
 }
 
 void unknown_table_print(const unknown_table *t, FILE *stream)
 {
     fprintf(stream,
             "%s on %zu objects; mean angle of normals in degrees, (-N): N of them refused; albedo's error in 1e-2, its "
-            "scale free\n\n%-*s%*s",
+            "scale free; surest: of the half of the pixels whose spread is least\n\n%-*s%*s",
             t->model, t->count, CELL, "pictures", CELL, "objects");
     for (int way = 0; way < UNKNOWN_WAYS; way++)
         fprintf(stream, "%*s", CELL, words[way].heading);
     for (int way = 0; way < UNKNOWN_WAYS; way++)
-        if (has_albedo(t, (unknown_way)way)) fprintf(stream, "%*s albedo", ALBEDO_CELL - 7, words[way].heading);
+        if (has_albedo(t, (unknown_way)way)) fprintf(stream, "%*s albedo", WIDE_CELL - 7, words[way].heading);
+    for (int way = 0; way < UNKNOWN_WAYS; way++)
+        if (has_spread(t, (unknown_way)way)) fprintf(stream, "%*s surest", WIDE_CELL - 5, words[way].heading);
     for (int row = 0; row < UNKNOWN_ROWS; row++)
         print_row(t, row, stream);
     fprintf(stream, "\n\n%.1f s\n", t->seconds);
@@ -95,6 +112,8 @@ static void put_object(cJSON *list, const unknown_object *o)
             json_put_number(errors, words[way].key, o->error[row][way]);
         for (int way = 0; way < UNKNOWN_WAYS; way++)
             if (!isnan(o->albedo[row][way])) json_put_number(errors, words[way].albedo_key, o->albedo[row][way]);
+        for (int way = 0; way < UNKNOWN_WAYS; way++)
+            if (!isnan(o->surest[row][way])) json_put_number(errors, words[way].surest_key, o->surest[row][way]);
     }
     cJSON_AddItemToArray(list, to);
 }

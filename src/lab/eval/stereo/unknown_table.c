@@ -48,13 +48,14 @@ static status choose(const merlin_capture *all, int count, merlin_capture *out)
 
 /* Maps to compare with the truth; without albedo where a solver's has another meaning. */
 typedef struct solution {
-    img normal, albedo;
+    img normal, albedo, spread;
 } solution;
 
 static void solution_free(solution *s)
 {
     img_free(&s->normal);
     img_free(&s->albedo);
+    img_free(&s->spread);
 }
 
 static status solve(const run *r, const merlin_capture *c, unknown_way way, solution *out)
@@ -67,34 +68,74 @@ static status solve(const run *r, const merlin_capture *c, unknown_way way, solu
         merlin_surface found;
         status s = pst_solve(c, &how, &found);
         if (s != OK) return s;
-        out->normal = found.normal;
-        found.normal = (img){0};
+        *out = (solution){.normal = found.normal, .spread = found.spread};
+        found.normal = found.spread = (img){0};
         merlin_surface_free(&found);
         return OK;
     }
     merlin_maps maps;
     status s = maps_of_capture(r->model, c, &params, way == UNKNOWN_REFINED, &maps);
     if (s != OK) return s;
-    *out = (solution){maps.normal, maps.albedo};
-    maps.normal = maps.albedo = (img){0};
+    *out = (solution){maps.normal, maps.albedo, maps.spread};
+    maps.normal = maps.albedo = maps.spread = (img){0};
     merlin_maps_free(&maps);
     return OK;
 }
 
+/* A pixel's spread and error. */
+typedef struct doubted {
+    float spread, error;
+} doubted;
+
+static int by_spread(const void *a, const void *b)
+{
+    const float x = ((const doubted *)a)->spread, y = ((const doubted *)b)->spread;
+    return (x > y) - (x < y);
+}
+
+/* Computes the mean error of the half of the pixels whose spread is least: the less it is, the better the spread tells
+ * where normals are wrong. */
+static status error_of_surest(const solution *found, const merlin_capture *c, double *out)
+{
+    const size_t pixels = (size_t)c->width * (size_t)c->height;
+    size_t count = 0;
+    double sum = 0;
+    doubted *all = malloc(pixels * sizeof *all);
+    if (!all) return fail(MERLIN_NO_MEMORY, "no memory for %zu pixels", pixels);
+    for (size_t i = 0; i < pixels; i++) {
+        const vec3 truth = vec3_of(c->normal_true.data + 3 * i);
+        if (!(c->mask.data[i] > 0.5f) || vec3_length(truth) < 0.5f) continue;
+        const float error = (float)vec3_angle(vec3_of(found->normal.data + 3 * i), truth);
+        all[count++] = (doubted){found->spread.data[i], error};
+    }
+    qsort(all, count, sizeof *all, by_spread);
+    for (size_t i = 0; i < count / 2; i++)
+        sum += (double)all[i].error;
+    *out = count > 1 ? sum / (double)(count / 2) : (double)NAN;
+    free(all);
+    return OK;
+}
+
+/* Measures one way's result, if there is one. */
+static status measure_solution(const stereo_object *o, const solution *found, unknown_way way, int row,
+                               unknown_object *out)
+{
+    out->error[row][way] = normal_mean_angle(&found->normal, &o->capture, NULL);
+    if (found->albedo.data && o->albedo.data)
+        out->albedo[row][way] = EVAL_UNIT * eval_mse_scale_free(&found->albedo, &o->albedo, &o->capture.mask);
+    return found->spread.data ? error_of_surest(found, &o->capture, &out->surest[row][way]) : OK;
+}
+
 /* A capture that a solver can make nothing of is a result, too. */
-static status measure(run *r, const stereo_object *o, int count, double error[UNKNOWN_WAYS],
-                      double albedo[UNKNOWN_WAYS])
+static status measure(run *r, const stereo_object *o, int count, int row, unknown_object *out)
 {
     merlin_capture c;
-    const img *mask = &o->capture.mask;
     status s = choose(&o->capture, count, &c);
     for (int way = 0; way < UNKNOWN_WAYS && s == OK; way++) {
         solution found = {0};
         s = r->options->stopped && r->options->stopped() ? fail(MERLIN_STOPPED, "stopped")
                                                          : solve(r, &c, (unknown_way)way, &found);
-        if (s == OK) error[way] = normal_mean_angle(&found.normal, &o->capture, NULL);
-        if (s == OK && found.albedo.data && o->albedo.data)
-            albedo[way] = EVAL_UNIT * eval_mse_scale_free(&found.albedo, &o->albedo, mask);
+        if (s == OK) s = measure_solution(o, &found, (unknown_way)way, row, out);
         if (s == MERLIN_BAD_INPUT) s = OK;
         solution_free(&found);
         progress_update(&r->bar, ++r->done, o->name);
@@ -130,9 +171,9 @@ static status measure_object(run *r, const char *path, size_t index, unknown_obj
     out->pictures = o.capture.count;
     for (int row = 0; row < UNKNOWN_ROWS; row++) {
         for (int way = 0; way < UNKNOWN_WAYS; way++)
-            out->error[row][way] = out->albedo[row][way] = (double)NAN;
+            out->error[row][way] = out->albedo[row][way] = out->surest[row][way] = (double)NAN;
         const int count = unknown_row_pictures(out, row);
-        if (count > 0 && s == OK) s = measure(r, &o, count, out->error[row], out->albedo[row]);
+        if (count > 0 && s == OK) s = measure(r, &o, count, row, out);
     }
     stereo_object_free(&o);
     return s == OK || s == MERLIN_STOPPED ? s : fail_in(s, "%s", out->name);

@@ -27,6 +27,8 @@ typedef struct unknown_object {
     int pictures;
     double error[UNKNOWN_ROWS][UNKNOWN_WAYS];  /* degrees; NAN: not measured, or refused */
     double albedo[UNKNOWN_ROWS][UNKNOWN_WAYS]; /* mean squared, as eval_mse_scale_free times EVAL_UNIT; NAN: unknown */
+    double surest[UNKNOWN_ROWS]
+                 [UNKNOWN_WAYS]; /* error of the half of the pixels whose spread is least; NAN: no spread */
 } unknown_object;
 
 typedef struct unknown_table {
