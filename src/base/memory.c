@@ -3,7 +3,9 @@
 
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 /* size of a large page, and of the smallest block that is likely to hold two whole ones */
 static const size_t LARGE_PAGE = (size_t)2 << 20, LEAST_BLOCK = (size_t)6 << 20;
@@ -72,4 +74,17 @@ void memory_prefer_large_pages(void *block, size_t bytes)
     char *first = (char *)block + (-(uintptr_t)block & (LARGE_PAGE - 1));
     size_t whole = (size_t)((char *)block + bytes - first) & ~(LARGE_PAGE - 1);
     (void)madvise(first, whole, MADV_HUGEPAGE); /* only advice, so that failure does not matter */
+}
+
+void memory_forget(void *part, size_t bytes)
+{
+    const size_t page = (size_t)sysconf(_SC_PAGESIZE);
+    char *end = (char *)part + bytes, *first = (char *)part + (-(uintptr_t)part & (page - 1));
+    char *last = end - ((uintptr_t)end & (page - 1));
+    if (first >= last || madvise(first, (size_t)(last - first), MADV_DONTNEED) != 0) {
+        memset(part, 0, bytes);
+        return;
+    }
+    memset(part, 0, (size_t)(first - (char *)part));
+    memset(last, 0, (size_t)(end - last));
 }

@@ -29,4 +29,7 @@ bool memory_is_left(size_t bytes);
  * page fault instead of hundreds. Has no other effect. */
 void memory_prefer_large_pages(void *block, size_t bytes);
 
+/* Sets a part of a block, malloc'ed or not, to zero, and gives its whole pages back to the system. */
+void memory_forget(void *part, size_t bytes);
+
 #endif

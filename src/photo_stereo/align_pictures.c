@@ -36,13 +36,22 @@ typedef struct level {
 
 /* ---- edges ---- */
 
-static status brightness_of(const merlin_capture *c, int k, img *out)
+/* Makes a picture's brightness, each pixel the mean of `side` × `side`; a rest at the right and below is left out. */
+static status brightness_of(const merlin_capture *c, int k, int side, img *out)
 {
-    const size_t channels = (size_t)c->channels;
-    status s = img_new(out, c->width, c->height, 1);
-    for (size_t i = 0; s == OK && i < img_value_count(out); i++)
-        for (size_t ch = 0; ch < channels; ch++)
-            out->data[i] += (float)c->picture[k][channels * i + ch] / (65535 * (float)channels);
+    const size_t channels = (size_t)c->channels, run = (size_t)side * channels;
+    const float share = 1 / (65535 * (float)(side * side) * (float)channels);
+    status s = img_new(out, c->width / side, c->height / side, 1);
+    for (int y = 0; s == OK && y < side * out->height; y++) {
+        const uint16_t *from = c->picture[k] + (size_t)y * (size_t)c->width * channels;
+        float *to = img_at(out, 0, y / side);
+        for (int x = 0; x < out->width; x++) {
+            uint32_t sum = 0;
+            for (size_t i = 0; i < run; i++)
+                sum += *from++;
+            to[x] += share * (float)sum;
+        }
+    }
     return s;
 }
 
@@ -76,7 +85,9 @@ static status find_edges(void *context, size_t k)
 {
     const level *l = context;
     img whole = {0}, small = {0};
-    status s = brightness_of(l->capture, (int)k, &whole);
+    const int across = l->capture->width / l->width, down = l->capture->height / l->height;
+    const int side = across < down ? across : down;
+    status s = brightness_of(l->capture, (int)k, side > 1 ? side : 1, &whole);
     if (s == OK) s = img_resize(&whole, l->width, l->height, &small);
     if (s == OK) {
         take_logarithm(&small);

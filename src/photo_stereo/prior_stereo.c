@@ -63,7 +63,7 @@ static void take_spread(const img *spread, merlin_maps *maps)
         if (maps->mask.data[i] >= 0.5f) maps->spread.data[i] = spread->data[i];
 }
 
-static status take(const merlin_surface *found, int pictures, merlin_maps *maps)
+static void take(const merlin_surface *found, int pictures, merlin_maps *maps)
 {
     for (size_t i = 0; i < img_value_count(&maps->mask); i++) {
         if (!(maps->mask.data[i] >= 0.5f)) continue;
@@ -76,7 +76,6 @@ static status take(const merlin_surface *found, int pictures, merlin_maps *maps)
     if (pictures >= PST_FEWEST_UNKNOWN) measured_albedo_take(&found->albedo, maps);
     maps->refined = 1;
     maps->doubts &= ~(unsigned)MERLIN_DOUBT_NOT_REFINED;
-    return refit_depth(maps);
 }
 
 /* Surface and lights that are expected, in the space of the capture's camera. */
@@ -144,8 +143,10 @@ status prior_stereo_refine(const merlin_capture *capture, const prior_lights *li
     merlin_surface found = {0};
     status s = expect(maps, lights, capture->count, &e);
     if (s == OK) s = solve(capture, &e, stop, &found);
-    if (s == OK && !found.lights_unsure) s = take(&found, capture->count, maps);
-    merlin_surface_free(&found);
+    const bool taken = s == OK && !found.lights_unsure;
+    if (taken) take(&found, capture->count, maps);
+    merlin_surface_free(&found); /* before the depth is integrated, as that needs as much memory again */
     expectation_free(&e);
+    if (taken) s = refit_depth(maps);
     return s == MERLIN_BAD_INPUT ? OK : s; /* the pictures do not tell where the lights are */
 }

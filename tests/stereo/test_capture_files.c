@@ -55,6 +55,33 @@ static void rarer_kinds_are_taken_where_they_are_alone(void **state)
     pst_capture_free(&c);
 }
 
+/* With the margin that an object needs if a picture moved. */
+static void pictures_are_black_far_from_a_given_mask(void **state)
+{
+    (void)state;
+    enum { WIDTH = 160, HEIGHT = 96, MARGIN = WIDTH / 8, X = 70, Y = 40 };
+    const char *const names[] = {"a.png", "b.png", "c.png"};
+    for (int i = 0; i < 3; i++)
+        write_flat(names[i], WIDTH, HEIGHT, 3, 0.5f, IMG_LINEAR16);
+    img mask;
+    assert_int_equal(img_new(&mask, WIDTH, HEIGHT, 1), OK);
+    for (int y = Y; y < Y + 3; y++)
+        for (int x = X; x < X + 5; x++)
+            *img_at(&mask, x, y) = 1;
+    assert_int_equal(img_write_png(scratch_path("mask.png"), &mask, IMG_LINEAR8), OK);
+    write_text("lights.txt", "1 0 1\n0 1 1\n-1 0 1\n");
+    merlin_capture c;
+    if (pst_capture_read(scratch, &PLAIN, &c) != OK) fail_msg("%s", status_message());
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            const bool near = x >= X - MARGIN && x < X + 5 + MARGIN && y >= Y - MARGIN && y < Y + 3 + MARGIN;
+            for (int ch = 0; ch < 3; ch++)
+                assert_int_equal(c.picture[2][3 * (y * WIDTH + x) + ch] > 0, near);
+        }
+    pst_capture_free(&c);
+    img_free(&mask);
+}
+
 /* As the masks of many programs are called, which no picture of the capture is. */
 static void a_mask_may_have_any_usual_name(void **state)
 {
@@ -239,6 +266,7 @@ int main(void)
         in_scratch(a_mask_is_read_and_must_fit),
         in_scratch(results_beside_the_pictures_are_none),
         in_scratch(rarer_kinds_are_taken_where_they_are_alone),
+        in_scratch(pictures_are_black_far_from_a_given_mask),
         in_scratch(a_mask_may_have_any_usual_name),
         in_scratch(what_is_left_aside_is_listed_with_the_reason),
         in_scratch(raw_pictures_come_before_what_the_camera_made_of_them),

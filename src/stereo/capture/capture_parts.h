@@ -61,7 +61,8 @@ status pst_read_pictures(const char *folder, const merlin_capture_files *options
 /* Share of full scale: pixels that no light raises above it are background, or never lit. */
 #define PST_BLACK 0.004f
 
-/* Reads the mask from this file, or finds it if that is NULL; from: the folder or video of the pictures. */
+/* Reads the mask from this file, far from which pictures become black, or finds it if that is NULL; from: the folder or
+ * video of the pictures. */
 status pst_take_mask(const char *path, const char *from, merlin_capture *c);
 /* Reads the folder's mask, or finds it; then lists the files that were skipped. */
 status pst_read_mask(const char *folder, const merlin_capture_files *options, merlin_capture *c);

@@ -2,9 +2,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "image/read/folder.h"
 #include "image/read/read.h"
 #include "stereo/capture/capture_parts.h"
+
+/* Ratio of a picture's longer side to the margin around the object that is kept. */
+enum { MARGIN = 8 };
 
 status pst_find_mask(const char *folder, const char *asked, char **path)
 {
@@ -81,12 +85,58 @@ static status find_mask(const char *from, merlin_capture *c)
                 inside, inside == 1 ? "" : "s", inside == 1 ? "s" : "");
 }
 
+/* The part of a picture that is kept: from left to right, from top to bottom, without the latter. */
+typedef struct kept {
+    int left, right, top, bottom;
+} kept;
+
+static int within(int at, int size)
+{
+    return at < 0 ? 0 : at > size ? size : at;
+}
+
+/* Finds the box of the mask, and a margin for pictures that moved. */
+static kept find_kept(const merlin_capture *c)
+{
+    const int margin = (c->width > c->height ? c->width : c->height) / MARGIN;
+    kept k = {c->width, 0, c->height, 0};
+    for (int y = 0; y < c->height; y++)
+        for (int x = 0; x < c->width; x++) {
+            if (!(*img_at(&c->mask, x, y) > 0)) continue;
+            k.left = x < k.left ? x : k.left;
+            k.right = x + 1 > k.right ? x + 1 : k.right;
+            k.top = y < k.top ? y : k.top;
+            k.bottom = y + 1;
+        }
+    return (kept){within(k.left - margin, c->width), within(k.right + margin, c->width),
+                  within(k.top - margin, c->height), within(k.bottom + margin, c->height)};
+}
+
+/* Makes all pictures black far from the object, which nobody looks at, so that large ones take less memory. */
+static void forget_surroundings(merlin_capture *c)
+{
+    const kept k = find_kept(c);
+    const size_t pixel = (size_t)c->channels * sizeof **c->picture, width = (size_t)c->width;
+    for (int i = 0; i < c->count; i++) {
+        char *picture = (char *)c->picture[i];
+        size_t from = 0;
+        for (int y = k.top; y < k.bottom; y++) {
+            const size_t row = (size_t)y * width;
+            memory_forget(picture + from * pixel, (row + (size_t)k.left - from) * pixel);
+            from = row + (size_t)k.right;
+        }
+        memory_forget(picture + from * pixel, (width * (size_t)c->height - from) * pixel);
+    }
+}
+
 status pst_take_mask(const char *path, const char *from, merlin_capture *c)
 {
     c->mask_found = !path;
     if (!path) return find_mask(from, c);
     status s = img_read_mask(path, &c->mask);
-    return s == OK ? check_mask(path, c) : s;
+    if (s == OK) s = check_mask(path, c);
+    if (s == OK) forget_surroundings(c);
+    return s;
 }
 
 status pst_read_mask(const char *folder, const merlin_capture_files *options, merlin_capture *c)

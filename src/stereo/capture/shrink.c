@@ -14,6 +14,12 @@ typedef struct shrink_job {
     uint16_t high;
 } shrink_job;
 
+typedef struct map_job {
+    const img *map, *mask;
+    pst_blocks blocks;
+    img *to;
+} map_job;
+
 /* The part of a block that lies inside the picture. */
 typedef struct block {
     int left, right, top, bottom;
@@ -24,10 +30,9 @@ static int inside(int at, int end)
     return at < 0 ? 0 : at > end ? end : at;
 }
 
-static block block_of(const shrink_job *job, int x, int y)
+static block block_of(const pst_blocks *b, const img *mask, int x, int y)
 {
-    const pst_blocks *b = &job->blocks;
-    int left = b->x + x * b->factor, top = b->y + y * b->factor, width = job->from->width, height = job->from->height;
+    int left = b->x + x * b->factor, top = b->y + y * b->factor, width = mask->width, height = mask->height;
     return (block){inside(left, width), inside(left + b->factor, width), inside(top, height),
                    inside(top + b->factor, height)};
 }
@@ -60,7 +65,8 @@ static void shrink_picture(void *context, size_t k)
         for (int x = 0; x < to->width; x++) {
             size_t at = (size_t)y * (size_t)to->width + (size_t)x;
             if (to->mask.data[at] <= 0.5f) continue;
-            mean_of(job, job->from->picture[k], block_of(job, x, y), to->picture[k] + at * (size_t)to->channels);
+            mean_of(job, job->from->picture[k], block_of(&job->blocks, &job->from->mask, x, y),
+                    to->picture[k] + at * (size_t)to->channels);
         }
 }
 
@@ -79,7 +85,7 @@ static void shrink_mask(const shrink_job *job)
     img *to = &job->to->mask;
     for (int y = 0; y < to->height; y++)
         for (int x = 0; x < to->width; x++)
-            *img_at(to, x, y) = pixels_on_object(job, block_of(job, x, y)) >= needed;
+            *img_at(to, x, y) = pixels_on_object(job, block_of(&job->blocks, &job->from->mask, x, y)) >= needed;
 }
 
 static status allocate(const merlin_capture *c, const pst_blocks *b, merlin_capture *out)
@@ -123,6 +129,33 @@ status pst_shrink(const merlin_capture *c, pst_blocks blocks, float saturation, 
     shrink_mask(&job);
     parallel_for((size_t)c->count, shrink_picture, &job);
     return OK;
+}
+
+static void shrink_map_row(void *context, size_t y)
+{
+    const map_job *job = context;
+    const int channels = job->map->channels;
+    for (int x = 0; x < job->to->width; x++) {
+        const block b = block_of(&job->blocks, job->mask, x, (int)y);
+        float *to = img_at(job->to, x, (int)y), count = 0;
+        for (int j = b.top; j < b.bottom; j++)
+            for (int i = b.left; i < b.right; i++) {
+                if (!(*img_at(job->mask, i, j) > 0.5f)) continue;
+                for (int ch = 0; ch < channels; ch++)
+                    to[ch] += img_at(job->map, i, j)[ch];
+                count++;
+            }
+        for (int ch = 0; ch < channels && count > 0; ch++)
+            to[ch] /= count;
+    }
+}
+
+status pst_shrink_map(const img *map, const img *mask, pst_blocks blocks, img *out)
+{
+    map_job job = {map, mask, blocks, out};
+    status s = img_new(out, blocks.columns, blocks.rows, map->channels);
+    if (s == OK) parallel_for((size_t)blocks.rows, shrink_map_row, &job);
+    return s;
 }
 
 /* Selects these pictures and their lights in the caller's arrays of `some`, and shrinks them. */

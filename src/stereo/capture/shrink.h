@@ -27,6 +27,9 @@ pst_blocks pst_blocks_of(const merlin_capture *c, int factor);
  * Names and ground truth are omitted. */
 status pst_shrink(const merlin_capture *c, pst_blocks blocks, float saturation, merlin_capture *out);
 
+/* Makes a map's pixels the mean over the pixels of their block on the mask, 0 where there are none. */
+status pst_shrink_map(const img *map, const img *mask, pst_blocks blocks, img *out);
+
 /* Shrinks a capture to about this number of the object's pixels, at most four times as many, and to at most this number
  * of pictures, spread evenly; picture gets their indices. The lights are those of these pictures. */
 status pst_shrink_to(const merlin_capture *c, int pixels, int most_pictures, int picture[], merlin_capture *out);

@@ -10,12 +10,14 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "stereo/capture/shrink.h"
 #include "stereo/fit/field_fit.h"
 #include "stereo/fit/lobe_choice.h"
 #include "stereo/fit/samples.h"
 #include "stereo/integrate/integrate.h"
 #include "stereo/methods/solve_parts.h"
 #include "stereo/uncalibrated/inflate.h"
+#include "stereo/uncalibrated/smaller_problem.h"
 #include "stereo/uncalibrated/uncalibrated_parts.h"
 
 enum { SAMPLE = 400, ADMITTING = 192, DIFFERING = 1500 };
@@ -252,6 +254,23 @@ static status find_both(const pst_problem *p, hypothesis *near, hypothesis *dist
     return OK;
 }
 
+/* Finds both kinds of lights by fewer pixels where there are many. The depth is for all. */
+static status find_by_fewer(const pst_problem *p, hypothesis *near, hypothesis *distant)
+{
+    smaller_problem small;
+    status s = smaller_problem_new(p, &small);
+    if (s == OK) s = find_both(&small.problem, near, distant);
+    if (s == OK && small.factor > 1 && near->depth.data) {
+        img depth = {0};
+        s = img_new(&depth, p->capture->width, p->capture->height, 1);
+        if (s == OK) pst_enlarge(&near->depth, &small.capture.mask, &p->capture->mask, small.factor, &depth);
+        img_free(&near->depth);
+        near->depth = depth;
+    }
+    smaller_problem_free(&small);
+    return s;
+}
+
 /* Solves with these lights and stores them in the surface, but no depth and positions in the space of an unknown
  * camera. */
 static status solve_as(const pst_problem *p, hypothesis *h, bool camera_known, merlin_surface *out)
@@ -303,7 +322,7 @@ status pst_solve_uncalibrated(const pst_problem *p, merlin_surface *out)
     hypothesis distant = {.light = calloc(count, sizeof *distant.light)};
     status s = near.light && distant.light ? OK : fail(MERLIN_NO_MEMORY, "no memory for %zu lights", count);
     if (s == OK) s = check_not_flat(&q);
-    if (s == OK) s = find_both(&q, &near, &distant);
+    if (s == OK) s = find_by_fewer(&q, &near, &distant);
     if (s == OK) {
         bool camera_known = pinhole_is_near(&c->camera);
         bool are_near = near.cost < clearly * distant.cost;
