@@ -35,25 +35,38 @@ static void choose(const merlin_capture *all, int subset, merlin_capture *some)
     }
 }
 
+status subset_new(const merlin_capture *all, int subset, merlin_capture *out)
+{
+    const size_t count = (size_t)all->count;
+    *out = *all;
+    out->picture = calloc(count, sizeof *out->picture);
+    out->light = calloc(count, sizeof *out->light);
+    out->name = calloc(count, sizeof *out->name);
+    if (!out->picture || !out->light || !out->name) {
+        subset_free(out);
+        return fail(MERLIN_NO_MEMORY, "no memory for %d lights", all->count);
+    }
+    if (out->count > SUBSET_PICTURES) out->count = SUBSET_PICTURES;
+    choose(all, subset, out);
+    return OK;
+}
+
+void subset_free(merlin_capture *subset)
+{
+    free(subset->picture);
+    free(subset->light);
+    free(subset->name);
+    *subset = (merlin_capture){0};
+}
+
 status subset_solve(const merlin_capture *all, int subset, merlin_stereo_method method, merlin_surface *out)
 {
+    merlin_capture some;
     *out = (merlin_surface){0};
-    merlin_capture some = *all;
-    size_t count = (size_t)all->count;
-    some.picture = calloc(count, sizeof *some.picture);
-    some.light = calloc(count, sizeof *some.light);
-    some.name = calloc(count, sizeof *some.name);
-    status s = OK;
-    if (!some.picture || !some.light || !some.name) {
-        s = fail(MERLIN_NO_MEMORY, "no memory for %d lights", all->count);
-    } else {
-        if (some.count > SUBSET_PICTURES) some.count = SUBSET_PICTURES;
-        choose(all, subset, &some);
-        if (method == MERLIN_STEREO_UNCALIBRATED) pst_capture_forget_lights(&some);
-        s = pst_solve(&some, &(merlin_stereo_params){.method = method}, out);
-    }
-    free(some.picture);
-    free(some.light);
-    free(some.name);
+    status s = subset_new(all, subset, &some);
+    if (s != OK) return s;
+    if (method == MERLIN_STEREO_UNCALIBRATED) pst_capture_forget_lights(&some);
+    s = pst_solve(&some, &(merlin_stereo_params){.method = method}, out);
+    subset_free(&some);
     return s;
 }

@@ -16,8 +16,10 @@ enum { SUBSETS = 5, SUBSET_PICTURES = 32 };
 
 /* Returns SUBSETS, or 1 for a capture of at most SUBSET_PICTURES, which is always used completely. */
 int subset_count(const merlin_capture *all);
-/* Solves subset number `subset`, the same for every capture of as many pictures. MERLIN_STEREO_UNCALIBRATED does not
- * get the lights. */
+/* Makes subset number `subset`, the same for every capture of as many pictures, which it borrows. MERLIN_NO_MEMORY. */
+status subset_new(const merlin_capture *all, int subset, merlin_capture *out);
+void subset_free(merlin_capture *subset);
+/* Solves subset number `subset`. MERLIN_STEREO_UNCALIBRATED does not get the lights. */
 status subset_solve(const merlin_capture *all, int subset, merlin_stereo_method method, merlin_surface *out);
 
 #endif

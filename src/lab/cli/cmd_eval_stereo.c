@@ -3,6 +3,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "command/cli.h"
 #include "command/json_line.h"
@@ -20,6 +21,8 @@ static const char help[] =
     "or\n"
     "                     DiLiGenT layout, or a folder of such folders\n"
     "  --model W          weights to measure (default: $MERLIN_MODEL, else merlin-point)\n"
+    "  --method universal two rows more: by a network that sees the pictures of a draw together, lights unknown, as\n"
+    "                     merlin stereo does (merlin-any and merlin-lights)\n"
     "  --count N          only the first N objects\n"
     "  --figure F.png     a picture of the normals and where they are off\n"
     "      --json         report on standard output as JSON\n"
@@ -31,7 +34,7 @@ static const char help[] =
 
 typedef struct request {
     stereo_options options;
-    const char *model;
+    const char *model, *method;
     bool json, help;
 } request;
 
@@ -40,6 +43,7 @@ static status parse(int *argc, char ***argv, request *r)
     const cli_option options[] = {
         {"data", .text = &r->options.data},
         {"model", .text = &r->model},
+        {"method", .text = &r->method},
         {"count", .count = &r->options.count, .low = 1, .high = 100000000},
         {"figure", .picture = &r->options.figure},
         {"json", .flag = &r->json},
@@ -50,6 +54,8 @@ static status parse(int *argc, char ***argv, request *r)
     status s = cli_read_options(argc, argv, options);
     if (s != OK || r->help) return s;
     if (*argc > 0) return fail(MERLIN_WRONG_USE, "unexpected argument \"%s\"", (*argv)[0]);
+    if (r->method && strcmp(r->method, "universal") != 0)
+        return fail(MERLIN_WRONG_USE, "--method adds \"universal\", not \"%s\"", r->method);
     return r->options.data ? OK : fail(MERLIN_WRONG_USE, "--data DIR is missing");
 }
 
@@ -65,16 +71,22 @@ int eval_stereo(int argc, char **argv)
     request r = {.options = {.stopped = cli_interrupted}};
     if (parse(&argc, &argv, &r) != OK) return cli_usage("eval stereo", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
-    char *weights, *flash;
+    char *weights = NULL, *flash = NULL, *judge = NULL, *flash_judge = NULL, *lights = NULL;
     status s = photo_find_models(r.model, &weights, &flash);
-    if (s != OK) return cli_fail("eval stereo", s);
+    if (s == OK && r.method) s = photo_find_models("merlin-any", &judge, &flash_judge);
+    if (s == OK && r.method) s = photo_find_lights(NULL, &lights);
     r.options.weights = weights;
     r.options.flash = flash;
+    r.options.judge = judge;
+    r.options.lights = lights;
     cli_catch_interrupts();
     stereo_table table;
-    s = stereo_table_run(&r.options, &table);
+    if (s == OK) s = stereo_table_run(&r.options, &table);
     free(weights);
     free(flash);
+    free(judge);
+    free(flash_judge);
+    free(lights);
     if (s == OK) {
         s = announce(&r, &table);
         stereo_table_free(&table);

@@ -214,6 +214,39 @@ static void a_sample_without_targets_is_refused(void **state)
     sample_free(&s);
 }
 
+static char *printed(const stereo_table *t)
+{
+    char *text;
+    size_t size;
+    FILE *stream = open_memstream(&text, &size);
+    assert_non_null(stream);
+    stereo_table_print(t, stream);
+    fclose(stream);
+    return text;
+}
+
+static void the_universal_rows_are_there_if_they_were_asked_for(void **state)
+{
+    (void)state;
+    stereo_column cup = {.name = "cup", .pixels = 100, .pictures = 32};
+    const stereo_table t = {.model = "tiny", .object = &cup, .count = 1};
+    for (int row = 0; row < STEREO_ROWS; row++)
+        cup.row[row].error = 4;
+    cup.row[STEREO_RELIT_UNIVERSAL].error = 2.25;
+    char *text = printed(&t), *json = stereo_table_json(&t);
+    assert_non_null(strstr(text, "relit images, universal, against the single image: -1.75 degrees; better on 1 of 1"));
+    assert_non_null(strstr(json, "\"real_images_universal\""));
+    free(text);
+    free(json);
+    cup.row[STEREO_RELIT_UNIVERSAL].error = cup.row[STEREO_REAL_UNIVERSAL].error = (double)NAN;
+    text = printed(&t);
+    json = stereo_table_json(&t);
+    assert_null(strstr(text, "universal"));
+    assert_null(strstr(json, "universal"));
+    free(text);
+    free(json);
+}
+
 static void a_table_without_solutions_has_no_numbers_for_them(void **state)
 {
     (void)state;
@@ -221,12 +254,7 @@ static void a_table_without_solutions_has_no_numbers_for_them(void **state)
     for (int row = STEREO_RELIT; row < STEREO_ROWS; row++)
         refused.row[row] = (stereo_score){.error = NAN, .failed = SUBSETS};
     stereo_table t = {.model = "tiny", .object = &refused, .count = 1};
-    char *text;
-    size_t size;
-    FILE *stream = open_memstream(&text, &size);
-    assert_non_null(stream);
-    stereo_table_print(&t, stream);
-    fclose(stream);
+    char *text = printed(&t);
     assert_null(strstr(text, "nan"));
     assert_non_null(strstr(text, "uncalibrated, against the single image: no object was solved"));
     free(text);
@@ -241,6 +269,7 @@ int main(void)
         cmocka_unit_test(normals_keep_their_angle_to_the_line_of_sight),
         cmocka_unit_test(an_object_that_shrinking_takes_apart_is_refused),
         cmocka_unit_test(a_sample_without_targets_is_refused),
+        cmocka_unit_test(the_universal_rows_are_there_if_they_were_asked_for),
         cmocka_unit_test(a_table_without_solutions_has_no_numbers_for_them),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -2,6 +2,7 @@
 /* Prints stereo_table.h's table as text and as JSON. */
 #include <cjson/cJSON.h>
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 #include "base/json/json_put.h"
@@ -87,16 +88,28 @@ void stereo_table_print(const stereo_table *t, FILE *stream)
     fputs("uncalibrated\n", stream);
     print_row(t, STEREO_RELIT_UNCALIBRATED, "  relit images", stream);
     print_row(t, STEREO_REAL_UNCALIBRATED, "  real images", stream);
+    const bool universal = !isnan(stereo_table_mean(t, STEREO_RELIT_UNIVERSAL));
+    if (universal) {
+        fputs("universal\n", stream);
+        print_row(t, STEREO_RELIT_UNIVERSAL, "  relit images", stream);
+        print_row(t, STEREO_REAL_UNIVERSAL, "  real images", stream);
+    }
     fputc('\n', stream);
     print_comparison(t, STEREO_RELIT, "relit images", stream);
     print_comparison(t, STEREO_RELIT_UNCALIBRATED, "relit images, uncalibrated,", stream);
+    if (universal) print_comparison(t, STEREO_RELIT_UNIVERSAL, "relit images, universal,", stream);
     fprintf(stream, "%.1f s\n", t->seconds);
 }
 
 /* ---- JSON ---- */
 
-static const char *const keys[STEREO_ROWS] = {"single_image", "relit_images", "real_images",
-                                              "relit_images_uncalibrated", "real_images_uncalibrated"};
+static const char *const keys[STEREO_ROWS] = {"single_image",
+                                              "relit_images",
+                                              "real_images",
+                                              "relit_images_uncalibrated",
+                                              "real_images_uncalibrated",
+                                              "relit_images_universal",
+                                              "real_images_universal"};
 
 static void add_number(cJSON *o, const char *key, double value)
 {
@@ -110,6 +123,7 @@ static cJSON *object_json(const stereo_column *column)
     json_put_number(o, "pixels", (double)column->pixels);
     json_put_number(o, "real_pictures", column->pictures);
     for (int row = 0; row < STEREO_ROWS; row++) {
+        if (row >= STEREO_RELIT_UNIVERSAL && isnan(column->row[row].error)) continue;
         cJSON *r = json_put_object(o, keys[row]);
         add_number(r, "error_degrees", column->row[row].error);
         if (row == STEREO_SINGLE) continue;

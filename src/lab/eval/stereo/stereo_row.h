@@ -9,6 +9,9 @@ typedef enum stereo_row {
     STEREO_REAL,   /* from real ones */
     STEREO_RELIT_UNCALIBRATED,
     STEREO_REAL_UNCALIBRATED,
+    STEREO_RELIT_UNIVERSAL, /* from relit pictures seen together by a network, lights unknown (merlin_maps_from_capture)
+                             */
+    STEREO_REAL_UNIVERSAL,
     STEREO_ROWS
 } stereo_row;
 

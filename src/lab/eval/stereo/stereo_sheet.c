@@ -8,9 +8,9 @@
 enum { COLUMNS = 2 + 2 * STEREO_ROWS };
 static const float WHITE = 45;
 
-static const char *const labels[COLUMNS] = {"photograph",    "normal, true", "single image", "off",
-                                            "relit",         "off",          "real",         "off",
-                                            "relit, uncal.", "off",          "real, uncal.", "off"};
+static const char *const labels[COLUMNS] = {
+    "photograph",    "normal, true", "single image", "off", "relit",        "off", "real",        "off",
+    "relit, uncal.", "off",          "real, uncal.", "off", "relit, univ.", "off", "real, univ.", "off"};
 
 status stereo_sheet_new(size_t objects, sheet_rows **out)
 {

@@ -11,14 +11,15 @@
 #include "lab/eval/stereo/stereo_frame.h"
 #include "lab/eval/stereo/stereo_object.h"
 #include "lab/eval/stereo/stereo_sheet.h"
+#include "merlin/surface.h"
 #include "photo_stereo/relit.h"
 #include "photo_stereo/subsets.h"
 #include "stereo/integrate/surface_error.h"
 
 typedef struct evaluation {
     const stereo_options *options;
-    merlin_model *model;
-    sheet_rows *sheet; /* or NULL */
+    merlin_model *model, *judge; /* judge: of the universal rows, or NULL */
+    sheet_rows *sheet;           /* or NULL */
     progress bar;
     size_t solved;
 } evaluation;
@@ -56,18 +57,49 @@ static status estimate(evaluation *e, subject *s)
     return OK;
 }
 
-static status solve_subset(subject *s, stereo_row row, const merlin_capture *from, int subset, double *angle)
+/* Computes normals of a subset by a network that sees its pictures together, and photometric stereo. */
+static status see_subset(const evaluation *e, const merlin_capture *from, int subset, img *normal)
 {
+    merlin_capture some;
+    merlin_maps maps = {0};
+    merlin_params params = merlin_params_default();
+    params.stop = e->options->stopped;
+    status result = subset_new(from, subset, &some);
+    if (result != OK) return result;
+    pst_capture_forget_lights(&some);
+    result = merlin_maps_from_capture(e->judge, &some, &params, &maps);
+    if (result == OK) {
+        *normal = maps.normal;
+        maps.normal = (img){0};
+    }
+    merlin_maps_free(&maps);
+    subset_free(&some);
+    return result;
+}
+
+static status solve_normals(const evaluation *e, stereo_row row, const merlin_capture *from, int subset, img *normal)
+{
+    if (row >= STEREO_RELIT_UNIVERSAL) return see_subset(e, from, subset, normal);
     merlin_stereo_method method = row >= STEREO_RELIT_UNCALIBRATED ? MERLIN_STEREO_UNCALIBRATED : MERLIN_STEREO_AUTO;
     merlin_surface found;
     status result = subset_solve(from, subset, method, &found);
     if (result != OK) return result;
-    normal_frame_change(&found.normal, &from->camera, &s->object.capture.camera);
-    *angle = normal_mean_angle(&found.normal, &s->object.capture, NULL);
-    img_free(&s->shown[row]);
-    s->shown[row] = found.normal;
+    *normal = found.normal;
     found.normal = (img){0};
     merlin_surface_free(&found);
+    return OK;
+}
+
+static status solve_subset(const evaluation *e, subject *s, stereo_row row, const merlin_capture *from, int subset,
+                           double *angle)
+{
+    img normal = {0};
+    status result = solve_normals(e, row, from, subset, &normal);
+    if (result != OK) return result;
+    normal_frame_change(&normal, &from->camera, &s->object.capture.camera);
+    *angle = normal_mean_angle(&normal, &s->object.capture, NULL);
+    img_free(&s->shown[row]);
+    s->shown[row] = normal;
     return OK;
 }
 
@@ -78,7 +110,7 @@ static status solve_subsets(evaluation *e, subject *s, stereo_row row, const mer
     double sum = 0, squares = 0, angle = 0, count = 0;
     for (int d = 0; d < subset_count(from); d++) {
         if (e->options->stopped && e->options->stopped()) return fail(MERLIN_STOPPED, "stopped");
-        status result = solve_subset(s, row, from, d, &angle);
+        status result = solve_subset(e, s, row, from, d, &angle);
         if (result != OK && result != MERLIN_BAD_INPUT) return fail_in(result, "%s", s->object.name);
         score->failed += result != OK;
         sum += result == OK ? angle : 0;
@@ -105,6 +137,9 @@ static status evaluate_subject(evaluation *e, subject *s, const char *path)
     if (result == OK) result = solve_subsets(e, s, STEREO_REAL, taken);
     if (result == OK) result = solve_subsets(e, s, STEREO_RELIT_UNCALIBRATED, made);
     if (result == OK) result = solve_subsets(e, s, STEREO_REAL_UNCALIBRATED, taken);
+    s->column->row[STEREO_RELIT_UNIVERSAL].error = s->column->row[STEREO_REAL_UNIVERSAL].error = (double)NAN;
+    if (result == OK && e->judge) result = solve_subsets(e, s, STEREO_RELIT_UNIVERSAL, made);
+    if (result == OK && e->judge) result = solve_subsets(e, s, STEREO_REAL_UNIVERSAL, taken);
     if (result == OK && e->sheet) result = stereo_sheet_add(e->sheet, &s->object, s->shown);
     return result;
 }
@@ -112,15 +147,24 @@ static status evaluate_subject(evaluation *e, subject *s, const char *path)
 static status evaluate_all(evaluation *e, char **path, stereo_table *out)
 {
     status s = OK;
-    progress_begin(&e->bar, "photometric stereo", "solutions", 0, out->count * 4 * SUBSETS, e->options->quiet);
+    const size_t solutions = (size_t)(e->judge ? 6 : 4) * SUBSETS;
+    progress_begin(&e->bar, "photometric stereo", "solutions", 0, out->count * solutions, e->options->quiet);
     for (size_t i = 0; i < out->count && s == OK; i++) {
         subject one = {.column = &out->object[i]};
         s = evaluate_subject(e, &one, path[i]);
         subject_free(&one);
-        e->solved = (i + 1) * 4 * SUBSETS;
+        e->solved = (i + 1) * solutions;
     }
     progress_end(&e->bar);
     return s;
+}
+
+/* Opens the network of the universal rows, if they are asked for. */
+static status open_judge(const stereo_options *options, merlin_model **out)
+{
+    if (!options->judge) return OK;
+    status s = merlin_model_open(options->judge, out);
+    return s == OK && options->lights ? merlin_model_add_lights(*out, options->lights) : s;
 }
 
 static status run_listed(const stereo_options *options, char **path, stereo_table *out)
@@ -130,11 +174,13 @@ static status run_listed(const stereo_options *options, char **path, stereo_tabl
     if (!out->object) return fail(MERLIN_NO_MEMORY, "no memory for a table of %zu objects", out->count);
     status s = model_open_pair(options->weights, options->flash, &e.model);
     if (s == OK) snprintf(out->model, sizeof out->model, "%s", merlin_model_name(e.model));
+    if (s == OK) s = open_judge(options, &e.judge);
     if (s == OK && options->figure) s = stereo_sheet_new(out->count, &e.sheet);
     if (s == OK) s = evaluate_all(&e, path, out);
     if (s == OK && e.sheet) s = sheet_rows_write(e.sheet, options->figure);
     sheet_rows_free(e.sheet);
     merlin_model_close(e.model);
+    merlin_model_close(e.judge);
     return s;
 }
 

@@ -24,7 +24,7 @@ typedef struct stereo_score {
     double
         error; /* mean angle to the true normals over the object, degrees; the mean of the subsets that were solved */
     double spread; /* standard deviation of their errors; 0 for a single one */
-    int failed;    /* subsets that the solver refused; if all, error is NAN */
+    int failed;    /* subsets that the solver refused; if all, error is NAN, as it is of a row that was not asked for */
 } stereo_score;
 
 typedef struct stereo_column {
@@ -43,6 +43,8 @@ typedef struct stereo_table {
 
 typedef struct stereo_options {
     const char *data, *weights, *flash; /* flash: weights for what is seen as a flash alone, or NULL */
+    const char *judge, *lights;         /* weights of the universal rows' network, and of their lights' (may be NULL);
+                                         * judge NULL: without these rows */
     size_t count;                       /* the first so many objects; 0: all */
     const char *figure;                 /* PNG of normals and where they are off, a line an object; NULL: none */
     bool quiet;
