@@ -21,7 +21,8 @@ typedef struct picture_shifts {
 /* Makes a capture whose pictures lie as the first one does: it shares with the original all that is not a picture that
  * had to be moved. What comes from beyond the edges is black. Edges are compared, as light changes all else: of each
  * picture with those of all others, within the mask and a margin, or everywhere without one. A shift is at most a
- * twentieth of the longer side, and none unless another is clearly better. */
+ * twentieth of the longer side, and none unless another is clearly better. MERLIN_BAD_INPUT if a picture plainly moved
+ * further, up to a quarter. */
 status align_pictures(const merlin_capture *c, merlin_capture *out, picture_shifts *shifts);
 void align_pictures_free(const merlin_capture *c, merlin_capture *aligned);
 

@@ -37,9 +37,11 @@ static void make(int channels, merlin_capture *c)
     relief_capture(&sphere, c);
     /* painted, as few real objects are plain */
     for (int k = 0; k < LIGHTS; k++)
-        for (int i = 0; i < SIZE * SIZE * channels; i++)
-            if ((i / channels % SIZE / 7 + i / channels / SIZE / 9) % 2)
+        for (int i = 0; i < SIZE * SIZE * channels; i++) {
+            const int across = i / channels % SIZE / 7, down = i / channels / SIZE / 9;
+            if (across * across * down % 3 == 1 || across * down % 5 == 2)
                 c->picture[k][i] = (uint16_t)(c->picture[k][i] / 2);
+        }
 }
 
 static void still_pictures_stay(void **state)
@@ -88,6 +90,19 @@ static void what_moved_comes_back(void **state)
     moved_pictures_come_back(1, false);
 }
 
+static void what_moved_too_far_is_refused(void **state)
+{
+    (void)state;
+    merlin_capture c, aligned;
+    picture_shifts shifts;
+    make(3, &c);
+    move(&c, 2, 12, -6);
+    assert_int_equal(align_pictures(&c, &aligned, &shifts), MERLIN_BAD_INPUT);
+    assert_non_null(strstr(status_message(), "the object is about 13 pixels aside"));
+    assert_null(aligned.picture);
+    capture_drop(&c);
+}
+
 static void one_picture_has_nothing_to_fit(void **state)
 {
     (void)state;
@@ -108,6 +123,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(still_pictures_stay),
         cmocka_unit_test(what_moved_comes_back),
+        cmocka_unit_test(what_moved_too_far_is_refused),
         cmocka_unit_test(one_picture_has_nothing_to_fit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
