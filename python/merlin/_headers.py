@@ -253,7 +253,7 @@ FUNCTIONS: Dict[str, Tuple[Any, List[Any]]] = {
     "files_free": (None, [_at(Files)]),
     "model_open": (c_int, [c_char_p, _out]),
     "model_add_flash": (c_int, [_handle, c_char_p]),
-    "model_add_lights": (c_int, [_handle, c_char_p]),
+    "model_add_several": (c_int, [_handle, c_char_p]),
     "model_close": (None, [_handle]),
     "model_name": (c_char_p, [_handle]),
     "model_prepare": (c_int, [_handle, _at(Params)]),

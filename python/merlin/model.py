@@ -28,11 +28,11 @@ def _shipped(name: str) -> Optional[bytes]:
 
 
 def _default_weights() -> Tuple[bytes, Optional[bytes], Optional[bytes]]:
-    """As the command's: $MERLIN_MODEL, else merlin-any and, for flashes, merlin-point; lights by merlin-lights."""
+    """As the command's: $MERLIN_MODEL, else merlin-any and, for flashes, merlin-point; several photographs by merlin-several."""
     named = os.environ.get("MERLIN_MODEL")
     if named:
         return weights_path(named, "MERLIN_MODEL: "), None, None
-    return weights_path("merlin-any"), _shipped("merlin-point"), _shipped("merlin-lights")
+    return weights_path("merlin-any"), _shipped("merlin-point"), _shipped("merlin-several")
 
 
 def hint_of(points: Optional[Points], box: Optional[Box]) -> Any:
@@ -133,24 +133,24 @@ class Model:
     """Trained weights, opened to work with. Several threads may use one model (they take turns), or each its own.
 
     weights: "merlin-any" (any light), "merlin-point" (a flash alone), "merlin-env" (a flash in a room), or a file.
-    flash: weights of the same kinds for photographs that those of any light see lit by a flash alone; lights:
-    "merlin-lights" or a file, which tells the lights of several photographs of an object together (`Capture.maps`).
-    Without any of them: $MERLIN_MODEL, else merlin-any with merlin-point and merlin-lights, as the command has it."""
+    flash: weights of the same kinds for photographs that those of any light see lit by a flash alone; several:
+    "merlin-several" or a file, which sees several photographs of an object together (`Capture.maps`).
+    Without any of them: $MERLIN_MODEL, else merlin-any with merlin-point and merlin-several, as the command has it."""
 
     def __init__(self, weights: Optional[PathLike] = None, *, flash: Optional[PathLike] = None,
-                 lights: Optional[PathLike] = None) -> None:
+                 several: Optional[PathLike] = None) -> None:
         main, other, together = _default_weights() if weights is None else (weights_path(weights), None, None)
         if flash is not None:
             other = weights_path(flash)
-        if lights is not None:
-            together = weights_path(lights)
+        if several is not None:
+            together = weights_path(several)
         self._owner: Optional[Owner] = Owner(ctypes.c_void_p(), "model_close")
         self._ready: Any = None
         check("model_open", main, self._owner.at, path=os.fsdecode(main))
         if other is not None:
             check("model_add_flash", self._handle.struct, other)
         if together is not None:
-            check("model_add_lights", self._handle.struct, together)
+            check("model_add_several", self._handle.struct, together)
 
     @property
     def _handle(self) -> Owner:

@@ -131,7 +131,7 @@ static status open_models(const request *r, merlin_model **model)
     const merlin_params params = merlin_params_default();
     status s = photo_find_models(r->model_name, &weights, &flash);
     if (s == OK) s = photo_open_models(weights, flash, model);
-    if (s == OK) s = photo_add_lights(flash, *model);
+    if (s == OK) s = photo_add_several(flash, *model);
     if (s == OK) s = merlin_model_prepare(*model, &params);
     free(weights);
     free(flash);

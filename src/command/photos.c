@@ -358,18 +358,18 @@ status photo_find_models_of(const merlin_maps *maps, const char *asked, char **p
     return s == OK && !*path ? photo_find_models(asked, path, flash) : s;
 }
 
-status photo_find_lights(const char *asked, char **path)
+status photo_find_several(const char *asked, char **path)
 {
     *path = NULL;
-    return asked ? photo_find_model(asked, path) : find_shipped("merlin-lights", path);
+    return asked ? photo_find_model(asked, path) : find_shipped("merlin-several", path);
 }
 
-status photo_add_lights(const char *flash, merlin_model *model)
+status photo_add_several(const char *flash, merlin_model *model)
 {
-    char *lights = NULL;
-    status s = flash ? photo_find_lights(NULL, &lights) : OK;
-    if (s == OK && lights) s = merlin_model_add_lights(model, lights);
-    free(lights);
+    char *several = NULL;
+    status s = flash ? photo_find_several(NULL, &several) : OK;
+    if (s == OK && several) s = merlin_model_add_several(model, several);
+    free(several);
     return s;
 }
 

@@ -54,13 +54,13 @@ status photo_find_models(const char *asked, char **path, char **flash);
  * ship. */
 status photo_find_models_of(const merlin_maps *maps, const char *asked, char **path, char **flash);
 
-/* Finds weights that tell the lights of several photographs, by a name or a path; asked NULL: merlin-lights, where it
- * is there, else *path is NULL. malloc'ed. */
-status photo_find_lights(const char *asked, char **path);
+/* Finds weights that see several photographs together, by a name or a path; asked NULL: merlin-several, where it is
+ * there, else *path is NULL. malloc'ed. */
+status photo_find_several(const char *asked, char **path);
 
-/* Adds merlin-lights, where it is there, to a model of weights that were not chosen; flash: what photo_find_models
+/* Adds merlin-several, where it is there, to a model of weights that were not chosen; flash: what photo_find_models
  * found, NULL of chosen weights, which stand alone. */
-status photo_add_lights(const char *flash, merlin_model *model);
+status photo_add_several(const char *flash, merlin_model *model);
 
 /* Opens the result of photo_find_models; flash may be NULL. */
 status photo_open_models(const char *path, const char *flash, merlin_model **out);

@@ -25,7 +25,7 @@ static const double usual_mean = 0.2, whole = 0.9;
 /* The pictures that the network sees. */
 typedef struct seen {
     const merlin_capture *capture;
-    bool compares; /* a network compares them, to refine the maps */
+    bool compares; /* a network compares them */
     int count, number[SEEN];
     float lights[SEEN][MODEL_LIGHTS];   /* of each, as the network sees them one by one */
     float compared[SEEN][MODEL_LIGHTS]; /* the same by a network that compares the pictures, if there is one */
@@ -183,7 +183,9 @@ static status refine(const seen *s, const merlin_params *params, merlin_maps *ma
         compared[s->number[i]] = vec3_of(s->compared[i] + MODEL_LIGHTS_LAMP);
         near[s->number[i]] = s->compared[i][MODEL_LIGHTS_DISTANCE];
     }
-    const prior_lights lights = {light, s->compares ? compared : NULL, near};
+    /* a start from lights of which some are unknown would be a wrong one */
+    const bool all_known = s->compares && s->count == s->capture->count;
+    const prior_lights lights = {light, all_known ? compared : NULL, near};
     if (st == OK) st = prior_stereo_refine(s->capture, &lights, params->stop, maps);
     free(light);
     free(near);
@@ -228,8 +230,7 @@ static status maps_of_aligned(merlin_model *model, const merlin_capture *capture
                               bool refined, merlin_maps *maps)
 {
     seen pictures = choose(capture);
-    /* a start from lights of which some are unknown would be a wrong one */
-    pictures.compares = refined && model->lights && pictures.count == capture->count;
+    pictures.compares = model->several != NULL;
     status s = estimate(model, &pictures, params, maps);
     if (s == OK) doubt_several(&pictures, maps);
     if (s == OK) advise(&pictures, maps);

@@ -163,14 +163,14 @@ static void lights_are_told_by_a_model_that_compares(void **state)
     assert_int_equal(write_random_weights_of("merlin-lights", lights), OK);
     assert_int_equal(merlin_model_open(lights, &model), MERLIN_BAD_INPUT);
     assert_int_equal(merlin_model_open(f->flash, &model), MERLIN_OK);
-    assert_int_equal(merlin_model_add_lights(model, lights), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_model_add_several(model, lights), MERLIN_WRONG_USE);
     merlin_model_close(model);
     assert_int_equal(merlin_model_open(f->any, &model), MERLIN_OK);
-    assert_int_equal(merlin_model_add_lights(model, "none.safetensors"), MERLIN_BAD_INPUT);
-    assert_int_equal(merlin_model_add_lights(model, f->any), MERLIN_WRONG_USE);
-    assert_int_equal(merlin_model_add_lights(model, lights), MERLIN_OK);
-    assert_int_equal(merlin_model_add_lights(model, lights), MERLIN_WRONG_USE);
-    assert_int_equal(merlin_model_add_lights(NULL, lights), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_model_add_several(model, "none.safetensors"), MERLIN_BAD_INPUT);
+    assert_int_equal(merlin_model_add_several(model, f->any), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_model_add_several(model, lights), MERLIN_OK);
+    assert_int_equal(merlin_model_add_several(model, lights), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_model_add_several(NULL, lights), MERLIN_WRONG_USE);
     merlin_model_close(model);
 }
 

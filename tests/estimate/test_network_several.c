@@ -2,7 +2,7 @@
 /* network_estimate_several: of one photograph it is network_estimate, the photographs' order does not matter, and each
  * has a light. */
 #include "base/rng.h"
-#include "estimate/photo/network.h"
+#include "estimate/photo/compare.h"
 #include "scratch.h"
 #include "weights.h"
 
@@ -154,8 +154,8 @@ static void lights_alone_are_those_of_the_whole_network(void **state)
     assert_int_equal(write_shared_weights_of("merlin-lights", scratch_path("several.safetensors"), weights), OK);
     assert_int_equal(network_open(weights, &alone), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "tells only the lights"));
-    assert_int_equal(network_open_lights(scratch_path("any.safetensors"), &alone), MERLIN_WRONG_USE);
-    assert_int_equal(network_open_lights(weights, &alone), OK);
+    assert_int_equal(network_open_several(scratch_path("any.safetensors"), &alone), MERLIN_WRONG_USE);
+    assert_int_equal(network_open_several(weights, &alone), OK);
     network_compute_in(alone, NN_FLOAT32);
     assert_int_equal(network_lights_several(alone, f->photo, PICTURES, &f->mask, &how, VIEWS, NULL, lights[0]), OK);
     assert_int_equal(
@@ -170,6 +170,30 @@ static void lights_alone_are_those_of_the_whole_network(void **state)
     network_close(alone);
 }
 
+/* A network that makes maps, too, changes those of another; one of lights alone leaves them. */
+static void a_comparison_changes_maps_if_it_makes_some(void **state)
+{
+    const fixture *f = *state;
+    network *alone;
+    network_estimation one;
+    float lights[PICTURES][MODEL_LIGHTS];
+    const char *weights = scratch_path("alone.safetensors");
+    const photo_group of = {f->photo, PICTURES, &f->mask, &how, 1, NULL};
+    assert_int_equal(write_shared_weights_of("merlin-lights", scratch_path("several.safetensors"), weights), OK);
+    assert_int_equal(network_open_several(weights, &alone), OK);
+    assert_int_equal(network_estimate_several(f->single, f->photo, PICTURES, &f->mask, &how, 1, NULL, NULL, &one), OK);
+    img before;
+    assert_int_equal(img_copy(&before, &one.maps.roughness), OK);
+    assert_int_equal(compare_photographs(alone, &of, lights, &one.maps), OK);
+    assert_memory_equal(before.data, one.maps.roughness.data, img_value_count(&before) * sizeof(float));
+    assert_int_equal(compare_photographs(f->network, &of, lights, &one.maps), OK);
+    assert_memory_not_equal(before.data, one.maps.roughness.data, img_value_count(&before) * sizeof(float));
+    assert_int_equal(compare_photographs(f->single, &of, lights, NULL), MERLIN_WRONG_USE);
+    img_free(&before);
+    network_estimation_free(&one);
+    network_close(alone);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -178,6 +202,7 @@ int main(void)
         cmocka_unit_test(a_network_of_one_photograph_gives_the_mean),
         cmocka_unit_test(what_it_cannot_take_is_refused),
         cmocka_unit_test(lights_alone_are_those_of_the_whole_network),
+        cmocka_unit_test(a_comparison_changes_maps_if_it_makes_some),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -20,7 +20,7 @@ static status open_model(const universal_request *r, merlin_model **out)
     char *weights = NULL, *flash = NULL;
     status s = photo_find_models(r->weights, &weights, &flash);
     if (s == OK) s = merlin_model_open(weights, out);
-    if (s == OK) s = photo_add_lights(flash, *out);
+    if (s == OK) s = photo_add_several(flash, *out);
     free(weights);
     free(flash);
     if (s == OK) return OK;

@@ -44,14 +44,14 @@ merlin_status merlin_model_add_flash(merlin_model *model, const char *weights)
     return s;
 }
 
-merlin_status merlin_model_add_lights(merlin_model *model, const char *weights)
+merlin_status merlin_model_add_several(merlin_model *model, const char *weights)
 {
     status s = api_needs(__func__, model && weights);
-    if (s == OK && model->lights) s = fail(MERLIN_WRONG_USE, "the model has another for lights already");
+    if (s == OK && model->several) s = fail(MERLIN_WRONG_USE, "the model has another for several photographs already");
     if (s == OK && network_config(model->network)->lighting != MODEL_LIGHT_ANY)
         s = fail(MERLIN_WRONG_USE, "%s is for flashes, and takes no photographs under other lights",
                  network_config(model->network)->name);
-    return s == OK ? network_open_lights(weights, &model->lights) : s;
+    return s == OK ? network_open_several(weights, &model->several) : s;
 }
 
 status model_open_pair(const char *weights, const char *flash, merlin_model **out)
@@ -96,7 +96,7 @@ void model_keep(merlin_model *model, network *kept)
 void merlin_model_close(merlin_model *model)
 {
     if (!model) return;
-    network_close(model->lights);
+    network_close(model->several);
     network_close(model->flash);
     network_close(model->network);
     free(model);

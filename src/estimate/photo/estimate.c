@@ -10,6 +10,7 @@
 #include "base/watch.h"
 #include "estimate/light/found_light.h"
 #include "estimate/light/relight_env.h"
+#include "estimate/photo/compare.h"
 #include "estimate/photo/detail.h"
 #include "estimate/photo/estimate.h"
 #include "estimate/photo/input.h"
@@ -190,13 +191,13 @@ static status make_input(work *w, merlin_maps *maps)
     return make_all_further(w);
 }
 
-/* Estimates the lights of several photographs by a network that compares them. */
-static status find_lights(network *n, work *w)
+/* Improves what is estimated of several photographs by a network that compares them. */
+static status compare(network *n, work *w)
 {
     const merlin_params *p = w->params;
+    const photo_group of = {w->low_photos, 1 + w->further.count, &w->low_mask, &w->how, p->views, p->stop};
     if (!n || !w->low_photos || !w->further.compared) return OK;
-    return network_lights_several(n, w->low_photos, 1 + w->further.count, &w->low_mask, &w->how, p->views, p->stop,
-                                  w->further.compared);
+    return compare_photographs(n, &of, w->further.compared, &w->low.maps);
 }
 
 static status run_network(network *n, work *w)
@@ -386,7 +387,7 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     if (w->params->last) model_keep(model, n);
     if (s == OK) s = prepare(model, n, w, maps);
     if (s == OK) s = run_network(n, w);
-    if (s == OK) s = find_lights(model->lights, w);
+    if (s == OK) s = compare(model->several, w);
     if (s == OK) s = lap(w, &t->network);
     if (s == OK) s = prepare_bounces(model, n, w, maps);
     maps->has_environment = network_config(n)->lighting == MODEL_LIGHT_BOTH;

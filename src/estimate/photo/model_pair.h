@@ -8,8 +8,8 @@
 
 struct merlin_model {
     network *network;
-    network *flash;  /* network for photographs lit by a flash only; NULL: `network` is used for them, too */
-    network *lights; /* network for the lights of several photographs; NULL: `network` tells them one by one */
+    network *flash;   /* network for photographs lit by a flash only; NULL: `network` is used for them, too */
+    network *several; /* network that compares several photographs; NULL: `network` sees them one by one */
 };
 
 /* Opens a model. flash: weights for merlin_model_add_flash, or NULL. */

@@ -86,7 +86,7 @@ status network_open(const char *weights, network **out)
     return keep_if(s, out);
 }
 
-status network_open_lights(const char *weights, network **out)
+status network_open_several(const char *weights, network **out)
 {
     status s = open_later(weights, out);
     if (s == OK && !(*out)->config.several)

@@ -19,8 +19,8 @@
  * pictures they estimate fine shape well, and coarse shape badly (detail.h). */
 enum { NETWORK_LEAST_SIZE = 64, NETWORK_SIZE = 256, NETWORK_LARGEST_SIZE = 512 };
 
-/* Size at which the lights of several photographs are seen, that of their training: light is coarse. */
-enum { NETWORK_LIGHTS_SIZE = 96 };
+/* Size at which several photographs are compared, that of the training for it: light is coarse. */
+enum { NETWORK_SEVERAL_SIZE = 96 };
 
 /* Default number of orientations in which a photograph is estimated: compared with one, four take 55 ms more than an
  * estimate's 145, and have five to ten per cent less error (docs/notes/several_views.md). */
@@ -41,7 +41,7 @@ status network_open(const char *weights, network **out);
  * first compiled. */
 status network_open_later(const char *weights, network **out);
 /* Does the same for network_lights_several. MERLIN_WRONG_USE for a model of one photograph. */
-status network_open_lights(const char *weights, network **out);
+status network_open_several(const char *weights, network **out);
 /* Changes the number type of further computations, so that both types' results can be compared. */
 void network_compute_in(network *n, nn_type type);
 void network_close(network *n);

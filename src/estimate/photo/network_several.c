@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "base/progress.h"
-#include "estimate/photo/input.h"
 #include "estimate/photo/network.h"
 #include "estimate/photo/network_parts.h"
 #include "estimate/photo/view.h"
@@ -173,18 +172,6 @@ status network_estimate_several(network *n, const img *photos, int count, const 
     return s;
 }
 
-/* Shrinks photographs to the size at which lights are seen, unless they are smaller. */
-static status shrink(const pictures *of, img *photos, img *mask)
-{
-    const int side = of->mask->width < NETWORK_LIGHTS_SIZE ? of->mask->width : NETWORK_LIGHTS_SIZE;
-    status s = OK;
-    for (int i = 0; i < of->count && s == OK; i++) {
-        img_free(mask);
-        s = input_make(&of->photos[i], of->mask, side, &photos[i], mask);
-    }
-    return s;
-}
-
 /* Sees the lights of all photographs together. */
 static status see_lights(network *n, const pictures *of, int views, int (*stop)(void), float (*lights)[MODEL_LIGHTS])
 {
@@ -202,17 +189,13 @@ static status see_lights(network *n, const pictures *of, int views, int (*stop)(
 status network_lights_several(network *n, const img *photos, int count, const img *mask, const sight *how, int views,
                               int (*stop)(void), float (*lights)[MODEL_LIGHTS])
 {
-    img small[NN_LARGEST_GROUP] = {0}, small_mask = {0};
+    const pictures of = {photos, mask, count, how};
     status s = network_check_views(views);
     if (s == OK && !n->config.several)
         s = fail(MERLIN_WRONG_USE, "model \"%s\" sees one photograph at a time", n->config.name);
     if (s == OK) s = check_count(count);
-    if (s == OK) s = shrink(&(pictures){photos, mask, count, how}, small, &small_mask);
     pthread_mutex_lock(&n->lock);
-    if (s == OK) s = see_lights(n, &(pictures){small, &small_mask, count, how}, views, stop, lights);
+    if (s == OK) s = see_lights(n, &of, views, stop, lights);
     pthread_mutex_unlock(&n->lock);
-    for (int i = 0; i < NN_LARGEST_GROUP; i++)
-        img_free(&small[i]);
-    img_free(&small_mask);
     return s;
 }

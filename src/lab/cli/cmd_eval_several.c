@@ -20,6 +20,7 @@ static const char help[] =
     "mean of what they make of each.\n\n"
     "  --data DIR       held-out samples\n"
     "  --model W        weights (default: merlin-any)\n"
+    "  --several W      weights that compare the photographs besides, as merlin stereo does (default: none)\n"
     "  --count N        only the first N samples\n"
     "  --size N         side of the photographs that the network sees, a multiple of 32 (default 256)\n"
     "  --views N        maps as merlin estimate --views N makes them (default 4, as there)\n"
@@ -38,6 +39,7 @@ static status parse(int argc, char **argv, request *r)
     const cli_option options[] = {
         {"data", .text = &r->options.data},
         {"model", .text = &r->options.weights},
+        {"several", .text = &r->options.several},
         {"count", .count = &r->options.count, .low = 1, .high = 1000000},
         {"size", .integer = &r->options.size, .low = MERLIN_LEAST_SIZE, .high = NETWORK_SIZE},
         {"views", .integer = &r->options.views, .low = 1, .high = 8},

@@ -22,7 +22,7 @@ static const char help[] =
     "                     DiLiGenT layout, or a folder of such folders\n"
     "  --model W          weights to measure (default: $MERLIN_MODEL, else merlin-point)\n"
     "  --method universal two rows more: by a network that sees the pictures of a draw together, lights unknown, as\n"
-    "                     merlin stereo does (merlin-any and merlin-lights)\n"
+    "                     merlin stereo does (merlin-any and merlin-several)\n"
     "  --count N          only the first N objects\n"
     "  --figure F.png     a picture of the normals and where they are off\n"
     "      --json         report on standard output as JSON\n"
@@ -71,14 +71,14 @@ int eval_stereo(int argc, char **argv)
     request r = {.options = {.stopped = cli_interrupted}};
     if (parse(&argc, &argv, &r) != OK) return cli_usage("eval stereo", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
-    char *weights = NULL, *flash = NULL, *judge = NULL, *flash_judge = NULL, *lights = NULL;
+    char *weights = NULL, *flash = NULL, *judge = NULL, *flash_judge = NULL, *several = NULL;
     status s = photo_find_models(r.model, &weights, &flash);
     if (s == OK && r.method) s = photo_find_models("merlin-any", &judge, &flash_judge);
-    if (s == OK && r.method) s = photo_find_lights(NULL, &lights);
+    if (s == OK && r.method) s = photo_find_several(NULL, &several);
     r.options.weights = weights;
     r.options.flash = flash;
     r.options.judge = judge;
-    r.options.lights = lights;
+    r.options.several = several;
     cli_catch_interrupts();
     stereo_table table;
     if (s == OK) s = stereo_table_run(&r.options, &table);
@@ -86,7 +86,7 @@ int eval_stereo(int argc, char **argv)
     free(flash);
     free(judge);
     free(flash_judge);
-    free(lights);
+    free(several);
     if (s == OK) {
         s = announce(&r, &table);
         stereo_table_free(&table);

@@ -24,7 +24,7 @@ static const char help[] =
     "                   lights)\n"
     "  --seed S         other rendered objects (default 2000)\n"
     "  --model W        weights (default: merlin-any)\n"
-    "  --lights W       weights that tell the lights (default: merlin-lights, where it is there)\n"
+    "  --several W      weights that see the pictures together (default: merlin-several, where it is there)\n"
     "  --count N        only the first N objects\n"
     "  --views N        maps as merlin estimate --views N makes them (default 4, as there)\n"
     "      --json       report on standard output as JSON\n"
@@ -42,7 +42,7 @@ static status parse(int argc, char **argv, request *r)
     const cli_option options[] = {
         {"data", .text = &r->options.data},
         {"model", .text = &r->options.weights},
-        {"lights", .text = &r->options.lights},
+        {"several", .text = &r->options.several},
         {"seed", .whole = &r->options.seed, .low = 0, .high = 2147483647},
         {"count", .count = &r->options.count, .low = 1, .high = 1000000},
         {"views", .integer = &r->options.views, .low = 1, .high = 8},
@@ -70,16 +70,16 @@ int eval_unknown(int argc, char **argv)
     if (parse(argc, argv, &r) != OK) return cli_usage("eval unknown", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
     cli_catch_interrupts();
-    char *weights = NULL, *flash = NULL, *lights = NULL;
+    char *weights = NULL, *flash = NULL, *several = NULL;
     unknown_table table;
     status s = photo_find_models(r.options.weights ? r.options.weights : "merlin-any", &weights, &flash);
-    if (s == OK) s = photo_find_lights(r.options.lights, &lights);
+    if (s == OK) s = photo_find_several(r.options.several, &several);
     r.options.weights = weights;
-    r.options.lights = lights;
+    r.options.several = several;
     if (s == OK) s = unknown_table_run(&r.options, &table);
     free(weights);
     free(flash);
-    free(lights);
+    free(several);
     if (s == OK) {
         s = announce(&r, &table);
         unknown_table_free(&table);

@@ -9,13 +9,15 @@
 #include "stereo/algebra/dense.h"
 
 /* Number of pixels, of steps, and of tries with more damping. */
-enum { SAMPLE = 2500, STEPS = 40, TRIES = 8, UNKNOWNS = 9, HEIGHTS = 3, SURFACES = 2 };
+enum { SAMPLE = 2500, STEPS = 40, TRIES = 8, UNKNOWNS = 9, HEIGHTS = 3 };
+/* Surfaces that the normals are compared with. */
+enum { OUTLINE, EXPECTED, SURFACES };
 /* Residuals at which a prior is about half given up: of the logarithm of a light's strength, of a unit vector's
  * distance from an expected normal, and from an expected light. */
 static const double uneven = 0.02, unlike = 0.5, aside = 0.5;
-/* Weight of integrability against that of the lights' strengths; each expected surface, and the expected lights, count
- * as much as these. docs/notes/several_photographs.md has the errors with other weights. */
-static const double integrable_weight = 5;
+/* Weights of integrability and of the inflated outline against that of the lights' strengths; the expected surface and
+ * the expected lights count as much as these. docs/notes/several_photographs.md has the errors with other weights. */
+static const double integrable_weight = 5, outline_weight = 2;
 /* Heights of the starting surfaces relative to the one most similar to the expected surface. */
 static const double heights[HEIGHTS] = {1, 1.7, 0.6};
 
@@ -56,8 +58,8 @@ static bool point_at(const pst_pseudo *f, size_t at, point *out)
     out->b = unit_at(f, slot[0]);
     out->right = vec3_scale(vec3_sub(unit_at(f, slot[1]), unit_at(f, slot[-1])), 0.5f);
     out->up = vec3_scale(vec3_sub(unit_at(f, slot[-width]), unit_at(f, slot[width])), 0.5f);
-    out->like[0] = vec3_of(f->inflated->data + 3 * at);
-    out->like[1] = f->problem->expected ? vec3_of(f->problem->expected->normal->data + 3 * at) : (vec3){0, 0, 0};
+    out->like[OUTLINE] = vec3_of(f->inflated->data + 3 * at);
+    out->like[EXPECTED] = f->problem->expected ? vec3_of(f->problem->expected->normal->data + 3 * at) : (vec3){0, 0, 0};
     return isfinite(vec3_dot(out->b, out->b) + vec3_dot(out->right, out->up));
 }
 
@@ -114,7 +116,7 @@ static bool compute(const fit *f, const double m[9], double *out)
     double dual[9];
     if (!pst_dual(m, dual)) return false;
     const double share = (double)f->count / (double)f->points;
-    const double along = sqrt(integrable_weight * share), like = sqrt(share);
+    const double along = sqrt(integrable_weight * share), like = sqrt(share), outline = sqrt(outline_weight);
     for (int k = 0; k < f->count; k++) {
         const vec3 light = pst_transform(dual, f->light[k]);
         *out++ = atan(log(fmax((double)vec3_length(light), 1e-12)) / uneven);
@@ -125,7 +127,7 @@ static bool compute(const fit *f, const double m[9], double *out)
         const vec3 normal = vec3_normalize(pst_transform(m, p->b));
         *out++ = along * tanh(curl(m, p) / f->rough);
         for (int k = 0; k < SURFACES; k++)
-            *out++ = like * unlikeness(normal, p->like[k]);
+            *out++ = (k == OUTLINE ? outline : 1) * like * unlikeness(normal, p->like[k]);
     }
     return true;
 }

@@ -164,7 +164,7 @@ static status open_judge(const stereo_options *options, merlin_model **out)
 {
     if (!options->judge) return OK;
     status s = merlin_model_open(options->judge, out);
-    return s == OK && options->lights ? merlin_model_add_lights(*out, options->lights) : s;
+    return s == OK && options->several ? merlin_model_add_several(*out, options->several) : s;
 }
 
 static status run_listed(const stereo_options *options, char **path, stereo_table *out)

@@ -43,10 +43,10 @@ typedef struct stereo_table {
 
 typedef struct stereo_options {
     const char *data, *weights, *flash; /* flash: weights for what is seen as a flash alone, or NULL */
-    const char *judge, *lights;         /* weights of the universal rows' network, and of their lights' (may be NULL);
-                                         * judge NULL: without these rows */
-    size_t count;                       /* the first so many objects; 0: all */
-    const char *figure;                 /* PNG of normals and where they are off, a line an object; NULL: none */
+    const char *judge, *several; /* weights of the universal rows: merlin_model_open's and _add_several's (may be NULL);
+                                  * judge NULL: without these rows */
+    size_t count;                /* the first so many objects; 0: all */
+    const char *figure;          /* PNG of normals and where they are off, a line an object; NULL: none */
     bool quiet;
     int (*stopped)(void); /* asked between solutions; NULL: never */
 } stereo_options;

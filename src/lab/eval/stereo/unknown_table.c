@@ -109,9 +109,10 @@ static status error_of_surest(const solution *found, const merlin_capture *c, do
         all[count++] = (doubted){found->spread.data[i], error};
     }
     qsort(all, count, sizeof *all, by_spread);
-    for (size_t i = 0; i < count / 2; i++)
+    const size_t half = count / 2;
+    for (size_t i = 0; i < half; i++)
         sum += (double)all[i].error;
-    *out = count > 1 ? sum / (double)(count / 2) : (double)NAN;
+    *out = half > 0 ? sum / (double)half : (double)NAN;
     free(all);
     return OK;
 }
@@ -184,7 +185,7 @@ static status measure_all(run *r, char **path, unknown_table *out)
     out->object = calloc(out->count, sizeof *out->object);
     if (!out->object) return fail(MERLIN_NO_MEMORY, "no memory for a table of %zu objects", out->count);
     status s = merlin_model_open(r->options->weights, &r->model);
-    if (s == OK && r->options->lights) s = merlin_model_add_lights(r->model, r->options->lights);
+    if (s == OK && r->options->several) s = merlin_model_add_several(r->model, r->options->several);
     if (s != OK) {
         merlin_model_close(r->model);
         return s;

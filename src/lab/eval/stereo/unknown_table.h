@@ -40,7 +40,7 @@ typedef struct unknown_table {
 
 typedef struct unknown_options {
     const char *data, *weights; /* data NULL: objects are rendered under UNKNOWN_LIGHTS distant lights */
-    const char *lights;         /* weights that tell the lights together; NULL: `weights` tell them one by one */
+    const char *several;        /* weights that see the pictures together; NULL: `weights` see them one by one */
     uint64_t seed;              /* of rendered objects */
     size_t count;               /* objects at most; 0: all, or UNKNOWN_RENDERED */
     int views;

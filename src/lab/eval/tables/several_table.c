@@ -9,6 +9,7 @@
 #include "base/number.h"
 #include "base/progress.h"
 #include "base/text/report.h"
+#include "estimate/photo/compare.h"
 #include "estimate/photo/input.h"
 #include "estimate/photo/network.h"
 #include "estimate/surface/exposure.h"
@@ -18,7 +19,7 @@ enum { MOST = 1 << (SEVERAL_ROWS - 1) };
 
 typedef struct run {
     const several_options *options;
-    network *network;
+    network *network, *several; /* several: network that compares the photographs, or NULL */
     several_table *table;
 } run;
 
@@ -82,10 +83,11 @@ static status measure(const run *r, const lit_subject *on, const photographs *p,
     const several_options *o = r->options;
     network_estimation found = {0};
     float lights[MOST][MODEL_LIGHTS];
-    status s = r->table->only_lights ? network_lights_several(r->network, p->photo, count, &p->mask, &p->how, o->views,
-                                                              o->stopped, lights)
+    const photo_group all = {p->photo, count, &p->mask, &p->how, o->views, o->stopped};
+    status s = r->table->only_lights ? compare_photographs(r->network, &all, lights, NULL)
                                      : network_estimate_several(r->network, p->photo, count, &p->mask, &p->how,
                                                                 o->views, o->stopped, lights, &found);
+    if (s == OK && r->several && count > 1) s = compare_photographs(r->several, &all, lights, &found.maps);
     if (s == OK) {
         s = add_figures(&found.maps, on, r->table->mean[row]);
         for (int i = 0; i < count; i++)
@@ -136,17 +138,19 @@ status several_table_run(const several_options *options, several_table *out)
     run r = {.options = options, .table = out};
     model_config config;
     status s = model_load_config(options->weights, &config);
-    if (s == OK) s = (config.only_lights ? network_open_lights : network_open)(options->weights, &r.network);
+    if (s == OK) s = (config.only_lights ? network_open_several : network_open)(options->weights, &r.network);
     if (s != OK) return s;
     const model_config *c = network_config(r.network);
     snprintf(out->model, sizeof out->model, "%s", c->name);
     out->together = c->several;
     out->only_lights = c->only_lights;
-    if (c->lighting == MODEL_LIGHT_ANY)
+    if (options->several) s = network_open_several(options->several, &r.several);
+    if (s == OK && c->lighting == MODEL_LIGHT_ANY)
         s = eval_each_sample(&all, measure_file, &r);
-    else
+    else if (s == OK)
         s = fail(MERLIN_BAD_INPUT, "%s: model \"%s\" is for flashes, not for lamps", options->weights, c->name);
     network_close(r.network);
+    network_close(r.several);
     finish(out);
     out->seconds = clock_seconds() - began;
     return s;

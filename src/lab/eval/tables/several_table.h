@@ -32,6 +32,8 @@ typedef struct several_table {
 
 typedef struct several_options {
     const char *data, *weights;
+    const char
+        *several; /* weights that compare the photographs, as merlin_model_add_several takes them; NULL: none do */
     size_t count; /* samples at most; 0: all */
     int views;
     int size; /* side of the photographs that the network sees, as in merlin_params; its maps are enlarged */
