@@ -27,8 +27,8 @@ merlin_status merlin_model_open(const char *weights, merlin_model **out);
 merlin_status merlin_model_add_flash(merlin_model *model, const char *weights);
 /* Adds to a model of any light another one that sees several photographs of an object together, such as the shipped
  * merlin-several: it tells their lights, and the coarse part of shape and material. merlin_maps_from_capture uses it.
- * MERLIN_WRONG_USE if the first assumes
- * a flash, or has another already, or if this one sees one photograph at a time. */
+ * MERLIN_WRONG_USE if the first assumes a flash, or has another already, or if this one sees one photograph at a time.
+ */
 merlin_status merlin_model_add_several(merlin_model *model, const char *weights);
 void merlin_model_close(merlin_model *model);
 /* Returns the first weights' name, valid while the model is open; "" for NULL. merlin_relighting_model names those that

@@ -204,7 +204,7 @@ class Surface:
         self.depth: np.ndarray = view(owner, struct.depth)
         self.residual: np.ndarray = view(owner, struct.residual)  #: H x W, root mean square left by the fit, a share
         #: H x W, degrees: standard error of the normals, by leaving out single pictures; None with "ls"
-        self.spread: Optional[np.ndarray] = view(owner, struct.spread) if struct.spread.data else None
+        self.spread: Optional[np.ndarray] = view(owner, struct.spread)
         self.mask: np.ndarray = view(owner, struct.mask)  #: H x W, 0 or 1
         self.camera = Camera(struct.camera.focal, struct.camera.x, struct.camera.y, struct.camera.distance)
         self.method: str = next(name for name, number in METHODS.items() if number == struct.method)  #: the one used

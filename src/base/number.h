@@ -23,6 +23,12 @@ static inline int min_int(int a, int b)
     return a < b ? a : b;
 }
 
+/* Limits x to [low, high]. */
+static inline int clamp_int(int x, int low, int high)
+{
+    return x < low ? low : x > high ? high : x;
+}
+
 static inline size_t min_size(size_t a, size_t b)
 {
     return a < b ? a : b;

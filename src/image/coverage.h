@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Tells whether coverage, 1 channel in [0, 1], says anything of what is an object and what is not. */
+/* Where coverage, 1 channel in [0, 1], has an object, and whether it says anything of that. */
 #ifndef MERLIN_IMAGE_COVERAGE_H
 #define MERLIN_IMAGE_COVERAGE_H
 
@@ -14,5 +14,13 @@
 bool coverage_is_opaque(const img *mask);
 /* Tells whether it is less than half everywhere, which shows nothing. */
 bool coverage_is_transparent(const img *mask);
+
+/* The smallest box around the pixels that are covered by half or more, and their number. Columns left to right and rows
+ * top to bottom, without the latter; of no pixels it is empty, with right before left. */
+typedef struct coverage_box {
+    int left, top, right, bottom;
+    size_t pixels;
+} coverage_box;
+coverage_box coverage_box_of(const img *mask);
 
 #endif

@@ -68,7 +68,7 @@ static void an_equal_estimate_changes_nothing(void **state)
     surface_free(&coarse);
 }
 
-/* What the other estimate differs is taken by its share, and the stripes that it does not see stay. */
+/* A share of the difference is taken, and the stripes that the other estimate does not see stay. */
 static void the_coarse_part_is_taken_and_detail_stays(void **state)
 {
     (void)state;

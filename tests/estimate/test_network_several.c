@@ -194,6 +194,31 @@ static void a_comparison_changes_maps_if_it_makes_some(void **state)
     network_close(alone);
 }
 
+/* Two photographs that are one leave nothing to differ; others do; a network of one tells it with its estimate. */
+static void the_spread_is_that_of_halves(void **state)
+{
+    const fixture *f = *state;
+    const img twice[2] = {f->photo[0], f->photo[0]};
+    network_estimation one;
+    img none, some;
+    double sum = 0;
+    assert_int_equal(network_spread_several(f->network, twice, 2, &f->mask, &how, &none), OK);
+    assert_int_equal(network_spread_several(f->network, f->photo, PICTURES, &f->mask, &how, &some), OK);
+    for (size_t i = 0; i < img_value_count(&none); i++) {
+        assert_float_equal(none.data[i], 0, 1e-3);
+        assert_true(some.data[i] >= 0 && some.data[i] <= 90);
+        sum += (double)some.data[i];
+    }
+    assert_true(sum > 0);
+    assert_int_equal(network_estimate_several(f->single, f->photo, PICTURES, &f->mask, &how, 1, NULL, NULL, &one), OK);
+    assert_non_null(one.spread.data);
+    network_estimation_free(&one);
+    img_free(&none);
+    img_free(&some);
+    assert_int_equal(network_spread_several(f->single, f->photo, 2, &f->mask, &how, &none), MERLIN_WRONG_USE);
+    assert_int_equal(network_spread_several(f->network, f->photo, 1, &f->mask, &how, &none), MERLIN_WRONG_USE);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -203,6 +228,7 @@ int main(void)
         cmocka_unit_test(what_it_cannot_take_is_refused),
         cmocka_unit_test(lights_alone_are_those_of_the_whole_network),
         cmocka_unit_test(a_comparison_changes_maps_if_it_makes_some),
+        cmocka_unit_test(the_spread_is_that_of_halves),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -47,17 +47,12 @@ status map_write_depths(const char *path, const img *depth, const img *mask)
     return img_write_png_changed(path, depth, IMG_LINEAR16, encode_depths, &r);
 }
 
-float map_confidence(float spread)
-{
-    const float unsure = 30;
-    return fmaxf(1 - spread / unsure, 0);
-}
-
 static void encode_confidence(const void *context, size_t first, size_t count, float *values)
 {
+    const float unsure = 30;
     const img *mask = context;
     for (size_t i = 0; i < count; i++)
-        values[i] = mask->data[first + i] > 0 ? map_confidence(values[i]) : 0;
+        values[i] = mask->data[first + i] > 0 ? fmaxf(1 - values[i] / unsure, 0) : 0;
 }
 
 status map_write_confidence(const char *path, const img *spread, const img *mask)

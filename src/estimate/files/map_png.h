@@ -17,7 +17,5 @@ status map_write_depths(const char *path, const img *depth, const img *mask);
 /* Writes how sure normals are: a spread (1 channel) of 0 degrees is white, of 30 and more as black as what is outside
  * the object. */
 status map_write_confidence(const char *path, const img *spread, const img *mask);
-/* Returns that value of a spread, in [0, 1]. */
-float map_confidence(float spread);
 
 #endif

@@ -305,8 +305,7 @@ void maps_tidy(merlin_maps *maps)
     surface_tidy(&all);
     img photo = maps->photo;
     img_zero_invalid(&photo);
-    for (size_t i = 0; maps->spread.data && i < img_value_count(&maps->mask); i++)
-        maps->spread.data[i] = maps->mask.data[i] > 0 ? clamp(maps->spread.data[i], 0, 90) : 0;
+    if (maps->spread.data) surface_tidy_spread(&maps->mask, &maps->spread);
 }
 
 status maps_read_photographed(exr_file *f, const char *path, merlin_maps *maps)

@@ -54,14 +54,26 @@ merlin_status merlin_model_add_several(merlin_model *model, const char *weights)
     return s == OK ? network_open_several(weights, &model->several) : s;
 }
 
-status model_open_pair(const char *weights, const char *flash, merlin_model **out)
+/* Opens a model with another one that is added to it; further: its weights, or NULL. */
+static status open_with(const char *weights, const char *further,
+                        merlin_status (*add)(merlin_model *model, const char *weights), merlin_model **out)
 {
     status s = merlin_model_open(weights, out);
-    if (s == OK && flash) s = merlin_model_add_flash(*out, flash);
+    if (s == OK && further) s = add(*out, further);
     if (s == OK) return OK;
     merlin_model_close(*out);
     *out = NULL;
     return s;
+}
+
+status model_open_pair(const char *weights, const char *flash, merlin_model **out)
+{
+    return open_with(weights, flash, merlin_model_add_flash, out);
+}
+
+status model_open_several(const char *weights, const char *several, merlin_model **out)
+{
+    return open_with(weights, several, merlin_model_add_several, out);
 }
 
 network *model_network(const merlin_model *model, const merlin_maps *maps, merlin_relighting how)

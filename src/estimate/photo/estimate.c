@@ -204,8 +204,12 @@ static status run_network(network *n, work *w)
 {
     const merlin_params *p = w->params;
     if (!w->low_photos) return network_estimate(n, &w->low_photo, &w->low_mask, &w->how, p->views, p->stop, &w->low);
-    return network_estimate_several(n, w->low_photos, 1 + w->further.count, &w->low_mask, &w->how, p->views, p->stop,
-                                    w->further.lights, &w->low);
+    const int count = 1 + w->further.count;
+    status s = network_estimate_several(n, w->low_photos, count, &w->low_mask, &w->how, p->views, p->stop,
+                                        w->further.lights, &w->low);
+    if (s == OK && network_config(n)->several)
+        s = network_spread_several(n, w->low_photos, count, &w->low_mask, &w->how, &w->low.spread);
+    return s;
 }
 
 static status follow_mean(network *n, work *w)
@@ -238,8 +242,7 @@ static void expose_picture(img *picture, float white)
 static status resize_spread(work *w)
 {
     status s = surface_resize_image(&w->low.spread, &w->low_mask, &w->crop_mask, &w->spread);
-    for (size_t i = 0; s == OK && i < img_value_count(&w->spread); i++)
-        w->spread.data[i] = w->crop_mask.data[i] > 0 ? clamp(w->spread.data[i], 0, 90) : 0;
+    if (s == OK) surface_tidy_spread(&w->crop_mask, &w->spread);
     return s;
 }
 

@@ -15,6 +15,9 @@ struct merlin_model {
 /* Opens a model. flash: weights for merlin_model_add_flash, or NULL. */
 status model_open_pair(const char *weights, const char *flash, merlin_model **out);
 
+/* Opens a model of any light. several: weights for merlin_model_add_several, or NULL. */
+status model_open_several(const char *weights, const char *several, merlin_model **out);
+
 /* Returns the network that made the maps; for maps of another origin that for flashes, whose bounces need only a
  * flash's direct light. For relighting by the decoder it is the one that has a decoder. */
 network *model_network(const merlin_model *model, const merlin_maps *maps, merlin_relighting how);

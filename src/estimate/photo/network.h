@@ -79,6 +79,10 @@ status network_lights(network *n, const img *photo, const img *mask, const sight
  * each. MERLIN_WRONG_USE for a model of flashes. */
 status network_estimate_several(network *n, const img *photos, int count, const img *mask, const sight *how, int views,
                                 int (*stop)(void), float (*lights)[MODEL_LIGHTS], network_estimation *out);
+/* Estimates how far normals depend on which photographs are seen (network_estimation's spread), by a model that sees
+ * them together; of one that sees them one by one network_estimate_several tells it. photos as there, two or more.
+ * MERLIN_WRONG_USE for other models. */
+status network_spread_several(network *n, const img *photos, int count, const img *mask, const sight *how, img *spread);
 /* Estimates only the lights of several photographs, seen together; photos as for network_estimate_several.
  * MERLIN_WRONG_USE unless the model sees several. */
 status network_lights_several(network *n, const img *photos, int count, const img *mask, const sight *how, int views,

@@ -142,7 +142,6 @@ static status see_together(network *n, const pictures *of, int views, int (*stop
 {
     pthread_mutex_lock(&n->lock);
     status s = see_all(n, of, views, stop, lights, out);
-    if (s == OK && of->count > 1) s = see_halves(n, of, &out->spread);
     pthread_mutex_unlock(&n->lock);
     return s;
 }
@@ -169,6 +168,19 @@ status network_estimate_several(network *n, const img *photos, int count, const 
     if (s == OK) s = img_copy(&out->maps.mask, mask);
     if (s == OK) s = network_finish(n, &out->maps);
     if (s != OK) network_estimation_free(out);
+    return s;
+}
+
+status network_spread_several(network *n, const img *photos, int count, const img *mask, const sight *how, img *spread)
+{
+    const pictures of = {photos, mask, count, how};
+    *spread = (img){0};
+    if (!n->config.several) return fail(MERLIN_WRONG_USE, "model \"%s\" sees one photograph at a time", n->config.name);
+    if (count < 2) return fail(MERLIN_WRONG_USE, "one photograph has no halves");
+    status s = check_count(count);
+    pthread_mutex_lock(&n->lock);
+    if (s == OK) s = see_halves(n, &of, spread);
+    pthread_mutex_unlock(&n->lock);
     return s;
 }
 

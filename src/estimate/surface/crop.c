@@ -4,29 +4,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "image/coverage.h"
+
 enum { FEWEST_PIXELS = 64 };
 static const float WANTED_SHARE = 0.8f, LEAST_SHARE_OF_WHOLE = 0.6f;
-
-typedef struct bounds {
-    int left, right, top, bottom;
-    size_t pixels;
-} bounds;
-
-static bounds bounds_of(const img *mask)
-{
-    bounds b = {mask->width, -1, mask->height, -1, 0};
-    for (int y = 0; y < mask->height; y++) {
-        for (int x = 0; x < mask->width; x++) {
-            if (!(*img_at(mask, x, y) >= 0.5f)) continue;
-            b.pixels++;
-            if (x < b.left) b.left = x;
-            if (x > b.right) b.right = x;
-            if (y < b.top) b.top = y;
-            b.bottom = y;
-        }
-    }
-    return b;
-}
 
 bool crop_is_sound(crop_square c)
 {
@@ -36,11 +17,11 @@ bool crop_is_sound(crop_square c)
 
 status crop_around(const img *mask, crop_square *out)
 {
-    bounds b = bounds_of(mask);
+    const coverage_box b = coverage_box_of(mask);
     if (b.pixels < FEWEST_PIXELS)
         return fail(MERLIN_BAD_INPUT, "the mask selects %s (%zu pixels are half white or more; at least %d are needed)",
                     b.pixels ? "too little" : "nothing", b.pixels, FEWEST_PIXELS);
-    int width = b.right - b.left + 1, height = b.bottom - b.top + 1;
+    int width = b.right - b.left, height = b.bottom - b.top;
     int longest = width > height ? width : height;
     if (mask->width == mask->height && (float)longest >= LEAST_SHARE_OF_WHOLE * (float)mask->width) {
         *out = (crop_square){0, 0, mask->width};
@@ -53,10 +34,10 @@ status crop_around(const img *mask, crop_square *out)
 
 bool crop_holds(const img *mask, crop_square c, int slack, float least_share)
 {
-    bounds b = bounds_of(mask);
-    int width = b.right - b.left + 1, height = b.bottom - b.top + 1;
-    bool inside = b.left >= c.x - slack && b.top >= c.y - slack && b.right < c.x + c.side + slack &&
-                  b.bottom < c.y + c.side + slack;
+    const coverage_box b = coverage_box_of(mask);
+    int width = b.right - b.left, height = b.bottom - b.top;
+    bool inside = b.left >= c.x - slack && b.top >= c.y - slack && b.right <= c.x + c.side + slack &&
+                  b.bottom <= c.y + c.side + slack;
     return b.pixels > 0 && inside && (float)(width > height ? width : height) >= least_share * (float)c.side;
 }
 

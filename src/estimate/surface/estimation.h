@@ -13,7 +13,8 @@ typedef struct network_estimation {
                    * Empty for several views, whose mean has other highlights: use network_indirect */
     float environment[9][3]; /* environment of the photograph (optics/sh.h), by models of setting B; zero for others */
     float lights[MODEL_LIGHTS]; /* lights of the photograph, by models of any light (model.h); zero for others */
-    img spread; /* of several photographs: half the angle between normals from two halves of them, 1 channel, degrees */
+    img spread; /* of several photographs: half the angle between normals from two halves of them, 1 channel, degrees;
+                 * empty where they are seen together (network_spread_several) */
     img visibility; /* visibility of the strongest lamp, by the same models, 1 channel in [0, 1]; empty for others */
 } network_estimation;
 

@@ -101,6 +101,12 @@ void surface_tidy_normals(const img *mask, img *normal)
     parallel_blocks((size_t)mask->width * (size_t)mask->height, tidy_normals, &(normal_map){mask, normal});
 }
 
+void surface_tidy_spread(const img *mask, img *spread)
+{
+    for (size_t i = 0; i < img_value_count(spread); i++)
+        spread->data[i] = mask->data[i] > 0 ? clamp(spread->data[i], 0, 90) : 0;
+}
+
 void harden_mask(img *image, img *mask)
 {
     size_t count = (size_t)mask->width * (size_t)mask->height;

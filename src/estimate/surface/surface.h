@@ -49,6 +49,8 @@ void surface_free(surface *s);
 void surface_tidy(surface *s);
 /* Does the same for a normal map; mask: of its size. */
 void surface_tidy_normals(const img *mask, img *normal);
+/* Does the same for a map of the normals' spread in degrees, which is in [0, 90]. */
+void surface_tidy_spread(const img *mask, img *spread);
 
 /* Makes a mask and an image (3 channels, may be NULL) the network's input: the mask 0 or 1, the image zero outside it
  * and not negative inside. */

@@ -3,6 +3,8 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/number.h"
+#include "image/coverage.h"
 #include "image/read/folder.h"
 #include "image/read/read.h"
 #include "stereo/capture/capture_parts.h"
@@ -85,37 +87,20 @@ static status find_mask(const char *from, merlin_capture *c)
                 inside, inside == 1 ? "" : "s", inside == 1 ? "s" : "");
 }
 
-/* The part of a picture that is kept: from left to right, from top to bottom, without the latter. */
-typedef struct kept {
-    int left, right, top, bottom;
-} kept;
-
-static int within(int at, int size)
-{
-    return at < 0 ? 0 : at > size ? size : at;
-}
-
-/* Finds the box of the mask, and a margin for pictures that moved. */
-static kept find_kept(const merlin_capture *c)
+/* Finds the mask's box with a margin for pictures that moved. */
+static coverage_box find_kept(const merlin_capture *c)
 {
     const int margin = (c->width > c->height ? c->width : c->height) / MARGIN;
-    kept k = {c->width, 0, c->height, 0};
-    for (int y = 0; y < c->height; y++)
-        for (int x = 0; x < c->width; x++) {
-            if (!(*img_at(&c->mask, x, y) > 0)) continue;
-            k.left = x < k.left ? x : k.left;
-            k.right = x + 1 > k.right ? x + 1 : k.right;
-            k.top = y < k.top ? y : k.top;
-            k.bottom = y + 1;
-        }
-    return (kept){within(k.left - margin, c->width), within(k.right + margin, c->width),
-                  within(k.top - margin, c->height), within(k.bottom + margin, c->height)};
+    const coverage_box b = coverage_box_of(&c->mask);
+    return (coverage_box){clamp_int(b.left - margin, 0, c->width), clamp_int(b.top - margin, 0, c->height),
+                          clamp_int(b.right + margin, 0, c->width), clamp_int(b.bottom + margin, 0, c->height),
+                          b.pixels};
 }
 
 /* Makes all pictures black far from the object, which nobody looks at, so that large ones take less memory. */
 static void forget_surroundings(merlin_capture *c)
 {
-    const kept k = find_kept(c);
+    const coverage_box k = find_kept(c);
     const size_t pixel = (size_t)c->channels * sizeof **c->picture, width = (size_t)c->width;
     for (int i = 0; i < c->count; i++) {
         char *picture = (char *)c->picture[i];

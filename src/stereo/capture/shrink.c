@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "base/parallel.h"
 
 typedef struct shrink_job {
@@ -25,16 +26,11 @@ typedef struct block {
     int left, right, top, bottom;
 } block;
 
-static int inside(int at, int end)
-{
-    return at < 0 ? 0 : at > end ? end : at;
-}
-
 static block block_of(const pst_blocks *b, const img *mask, int x, int y)
 {
     int left = b->x + x * b->factor, top = b->y + y * b->factor, width = mask->width, height = mask->height;
-    return (block){inside(left, width), inside(left + b->factor, width), inside(top, height),
-                   inside(top + b->factor, height)};
+    return (block){clamp_int(left, 0, width), clamp_int(left + b->factor, 0, width), clamp_int(top, 0, height),
+                   clamp_int(top + b->factor, 0, height)};
 }
 
 static void mean_of(const shrink_job *job, const uint16_t *picture, block b, uint16_t *out)

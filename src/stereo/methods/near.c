@@ -9,7 +9,7 @@
  * with their fall-off (fall_off.h), toward which its depth is weakly pulled, so that all of a part's pixels together
  * place the part.
  *
- * Most rounds use a small version of the pictures (shrink.h), which determines the depth nearly as well.
+ * Most rounds use a small version of the pictures (smaller_problem.h), which determines the depth nearly as well.
  *
  * If the camera's mean distance is known, the depth keeps it until parts have found their positions (afterwards
  * remaining errors in dark regions must not move the rest); otherwise the lights determine it, too. With few lights the
@@ -22,6 +22,7 @@
 #include "stereo/capture/shrink.h"
 #include "stereo/fit/field_fit.h"
 #include "stereo/fit/lobe_choice.h"
+#include "stereo/fit/smaller_problem.h"
 #include "stereo/integrate/integrate.h"
 #include "stereo/methods/solve_parts.h"
 
@@ -295,29 +296,21 @@ static status job_new(const pst_problem *p, merlin_surface *out, near_job *job)
 }
 
 /* Finds the depth map, the distance and the lobe on the small pictures. */
-static status find_depth_small(near_job *job, int factor)
+static status find_depth_small(near_job *job, const smaller_problem *small)
 {
-    const merlin_capture *c = job->problem->capture;
-    merlin_capture small;
-    status s = pst_shrink(c, pst_blocks_of(c, factor), job->problem->saturation, &small);
-    if (s != OK) return s;
-    pst_problem p = *job->problem;
+    const merlin_capture *c = &small->capture;
     merlin_surface found = {0};
     near_job search = {0};
-    p.capture = &small;
-    s = pst_list_pixels(&small, &p);
-    if (s == OK) s = img_new(&found.normal, small.width, small.height, 3);
-    if (s == OK) s = job_new(&p, &found, &search);
+    status s = img_new(&found.normal, c->width, c->height, 3);
+    if (s == OK) s = job_new(&small->problem, &found, &search);
     if (s == OK) s = find_depth(&search);
-    if (s == OK) pst_enlarge(&found.depth, &small.mask, &c->mask, factor, &job->out->depth);
+    if (s == OK) pst_enlarge(&found.depth, &c->mask, &job->problem->capture->mask, small->factor, &job->out->depth);
     job->lobe = search.lobe;
     job->held_at = search.held_at;
     job->out->distance_unsure = found.distance_unsure;
     job->camera.distance = search.camera.distance;
     job_free(&search);
     merlin_surface_free(&found);
-    free(p.pixel);
-    pst_capture_free(&small);
     return s;
 }
 
@@ -331,9 +324,11 @@ static status fill_in(near_job *job)
 
 static status solve(near_job *job)
 {
-    int factor = (int)sqrtf((float)job->problem->pixel_count / SMALL);
-    status s = factor > 1 ? find_depth_small(job, factor) : find_depth(job);
-    if (s == OK && factor > 1) s = fill_in(job);
+    smaller_problem small;
+    status s = smaller_problem_new(job->problem, SMALL, &small);
+    if (s == OK) s = small.factor > 1 ? find_depth_small(job, &small) : find_depth(job);
+    smaller_problem_free(&small);
+    if (s == OK && small.factor > 1) s = fill_in(job);
     if (s == OK) s = fit_normals(job, false);
     pst_field f = whole_field(job);
     if (s == OK) s = pst_field_replace_outliers(&f, SWEEPS);

@@ -14,13 +14,14 @@
 #include "stereo/fit/field_fit.h"
 #include "stereo/fit/lobe_choice.h"
 #include "stereo/fit/samples.h"
+#include "stereo/fit/smaller_problem.h"
 #include "stereo/integrate/integrate.h"
 #include "stereo/methods/solve_parts.h"
 #include "stereo/uncalibrated/inflate.h"
-#include "stereo/uncalibrated/smaller_problem.h"
 #include "stereo/uncalibrated/uncalibrated_parts.h"
 
-enum { SAMPLE = 400, ADMITTING = 192, DIFFERING = 1500 };
+/* ENOUGH: number of pixels by which lights are found, up to four times as many. */
+enum { SAMPLE = 400, ADMITTING = 192, DIFFERING = 1500, ENOUGH = 200000 };
 /* Ratio of near to distant lights' costs below which near ones are used, as they have one more unknown per picture and
  * a free distance. Measured on rendered objects: 0.1 to 0.7 if lights were an object's size or two away, 0.84 to 1.2 if
  * they were distant. */
@@ -258,7 +259,7 @@ static status find_both(const pst_problem *p, hypothesis *near, hypothesis *dist
 static status find_by_fewer(const pst_problem *p, hypothesis *near, hypothesis *distant)
 {
     smaller_problem small;
-    status s = smaller_problem_new(p, &small);
+    status s = smaller_problem_new(p, ENOUGH, &small);
     if (s == OK) s = find_both(&small.problem, near, distant);
     if (s == OK && small.factor > 1 && near->depth.data) {
         img depth = {0};

@@ -159,14 +159,6 @@ static status evaluate_all(evaluation *e, char **path, stereo_table *out)
     return s;
 }
 
-/* Opens the network of the universal rows, if they are asked for. */
-static status open_judge(const stereo_options *options, merlin_model **out)
-{
-    if (!options->judge) return OK;
-    status s = merlin_model_open(options->judge, out);
-    return s == OK && options->several ? merlin_model_add_several(*out, options->several) : s;
-}
-
 static status run_listed(const stereo_options *options, char **path, stereo_table *out)
 {
     evaluation e = {.options = options};
@@ -174,7 +166,7 @@ static status run_listed(const stereo_options *options, char **path, stereo_tabl
     if (!out->object) return fail(MERLIN_NO_MEMORY, "no memory for a table of %zu objects", out->count);
     status s = model_open_pair(options->weights, options->flash, &e.model);
     if (s == OK) snprintf(out->model, sizeof out->model, "%s", merlin_model_name(e.model));
-    if (s == OK) s = open_judge(options, &e.judge);
+    if (s == OK && options->judge) s = model_open_several(options->judge, options->several, &e.judge);
     if (s == OK && options->figure) s = stereo_sheet_new(out->count, &e.sheet);
     if (s == OK) s = evaluate_all(&e, path, out);
     if (s == OK && e.sheet) s = sheet_rows_write(e.sheet, options->figure);

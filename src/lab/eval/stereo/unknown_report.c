@@ -7,7 +7,7 @@
 #include "base/text/report.h"
 #include "lab/eval/stereo/unknown_table.h"
 
-enum { CELL = 14, WIDE_CELL = 17 };
+enum { CELL = 14, WIDE_CELL = 17, SUREST_CELL = 21 };
 
 static const struct {
     const char *heading, *key, *albedo_key, *surest_key;
@@ -43,19 +43,20 @@ static row_mean mean_of(const unknown_table *t, int row, unknown_way way)
     return m;
 }
 
-/* Tells whether there is an albedo to be compared. */
-static bool has_albedo(const unknown_table *t, unknown_way way)
-{
-    for (int row = 0; row < UNKNOWN_ROWS; row++)
-        if (mean_of(t, row, way).known) return true;
-    return false;
-}
+/* Tells which figures some row of a way has. */
+typedef struct figures {
+    bool has_albedo, has_surest;
+} figures;
 
-static bool has_spread(const unknown_table *t, unknown_way way)
+static figures figures_of(const unknown_table *t, int way)
 {
-    for (int row = 0; row < UNKNOWN_ROWS; row++)
-        if (mean_of(t, row, way).spread) return true;
-    return false;
+    figures f = {false, false};
+    for (int row = 0; row < UNKNOWN_ROWS; row++) {
+        const row_mean m = mean_of(t, row, (unknown_way)way);
+        f.has_albedo |= m.known > 0;
+        f.has_surest |= m.spread > 0;
+    }
+    return f;
 }
 
 static void print_row(const unknown_table *t, int row, FILE *stream)
@@ -73,11 +74,11 @@ static void print_row(const unknown_table *t, int row, FILE *stream)
         fprintf(stream, "%*s", CELL, cell);
     }
     for (int way = 0; way < UNKNOWN_WAYS; way++)
-        if (has_albedo(t, (unknown_way)way))
+        if (figures_of(t, way).has_albedo)
             fprintf(stream, "%*.2f", WIDE_CELL, 100 * mean_of(t, row, (unknown_way)way).albedo);
     for (int way = 0; way < UNKNOWN_WAYS; way++)
-        if (has_spread(t, (unknown_way)way))
-            fprintf(stream, "%*.2f", WIDE_CELL + 2, mean_of(t, row, (unknown_way)way).surest);
+        if (figures_of(t, way).has_surest)
+            fprintf(stream, "%*.2f", SUREST_CELL, mean_of(t, row, (unknown_way)way).surest);
 }
 
 void unknown_table_print(const unknown_table *t, FILE *stream)
@@ -89,9 +90,9 @@ void unknown_table_print(const unknown_table *t, FILE *stream)
     for (int way = 0; way < UNKNOWN_WAYS; way++)
         fprintf(stream, "%*s", CELL, words[way].heading);
     for (int way = 0; way < UNKNOWN_WAYS; way++)
-        if (has_albedo(t, (unknown_way)way)) fprintf(stream, "%*s albedo", WIDE_CELL - 7, words[way].heading);
+        if (figures_of(t, way).has_albedo) fprintf(stream, "%*s albedo", WIDE_CELL - 7, words[way].heading);
     for (int way = 0; way < UNKNOWN_WAYS; way++)
-        if (has_spread(t, (unknown_way)way)) fprintf(stream, "%*s surest", WIDE_CELL - 5, words[way].heading);
+        if (figures_of(t, way).has_surest) fprintf(stream, "%*s surest", SUREST_CELL - 7, words[way].heading);
     for (int row = 0; row < UNKNOWN_ROWS; row++)
         print_row(t, row, stream);
     fprintf(stream, "\n\n%.1f s\n", t->seconds);

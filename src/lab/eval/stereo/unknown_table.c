@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "base/progress.h"
+#include "estimate/photo/model_pair.h"
 #include "lab/eval/metrics/metrics.h"
 #include "lab/eval/metrics/normal_frame.h"
 #include "lab/eval/stereo/rendered_capture.h"
@@ -184,12 +185,8 @@ static status measure_all(run *r, char **path, unknown_table *out)
 {
     out->object = calloc(out->count, sizeof *out->object);
     if (!out->object) return fail(MERLIN_NO_MEMORY, "no memory for a table of %zu objects", out->count);
-    status s = merlin_model_open(r->options->weights, &r->model);
-    if (s == OK && r->options->several) s = merlin_model_add_several(r->model, r->options->several);
-    if (s != OK) {
-        merlin_model_close(r->model);
-        return s;
-    }
+    status s = model_open_several(r->options->weights, r->options->several, &r->model);
+    if (s != OK) return s;
     snprintf(out->model, sizeof out->model, "%s", merlin_model_name(r->model));
     const size_t solutions = (size_t)UNKNOWN_ROWS * UNKNOWN_WAYS;
     progress_begin(&r->bar, "unknown lights", "solutions", 0, out->count * solutions, r->options->quiet);

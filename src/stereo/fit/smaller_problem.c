@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "stereo/uncalibrated/smaller_problem.h"
+#include "stereo/fit/smaller_problem.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #include "stereo/capture/shrink.h"
-
-/* Least number of the object's pixels that remain. */
-enum { ENOUGH = 200000 };
 
 /* Shrinks what is expected. */
 static status shrink_expected(const pst_problem *p, pst_blocks blocks, smaller_problem *out)
@@ -25,9 +22,9 @@ static status shrink_expected(const pst_problem *p, pst_blocks blocks, smaller_p
     return pst_shrink_map(p->expected->depth, mask, blocks, &out->depth);
 }
 
-status smaller_problem_new(const pst_problem *p, smaller_problem *out)
+status smaller_problem_new(const pst_problem *p, int pixels, smaller_problem *out)
 {
-    const int factor = (int)sqrt((double)p->pixel_count / ENOUGH);
+    const int factor = (int)sqrt((double)p->pixel_count / pixels);
     *out = (smaller_problem){.problem = *p, .factor = factor > 1 ? factor : 1};
     if (out->factor == 1) return OK;
     const pst_blocks blocks = pst_blocks_of(p->capture, factor);
