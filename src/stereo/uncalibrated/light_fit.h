@@ -12,7 +12,4 @@
  * too thin. */
 status pst_fit_lights(const pst_pseudo *f, const vec3 *light, int count, double m[9]);
 
-/* Computes the transposed inverse; returns false if there is none. */
-bool pst_dual(const double m[9], double out[9]);
-
 #endif

@@ -20,6 +20,7 @@
 #include "stereo/fit/samples.h"
 #include "stereo/uncalibrated/integrable.h"
 #include "stereo/uncalibrated/light_fit.h"
+#include "stereo/uncalibrated/light_terms.h"
 #include "stereo/uncalibrated/uncalibrated_parts.h"
 
 enum { SAMPLE = 1500, REFITS = 30 };
