@@ -204,7 +204,17 @@ nn_node *nn_conv2d(nn_graph *g, nn_node *x, const char *name, int out, int kerne
     node->reduction = x->reduction * stride;
     node->at.kernel = kernel;
     node->at.stride = stride;
+    node->at.dilation = 1;
     node->at.bias = bias == NN_BIAS;
+    return node;
+}
+
+nn_node *nn_conv2d_dilated(nn_graph *g, nn_node *x, const char *name, int out, int kernel, int dilation, nn_bias bias)
+{
+    nn_node *node = nn_conv2d(g, x, name, out, kernel, 1, bias);
+    if (!node) return NULL;
+    if (dilation < 1 || dilation > 16) return graph_reject(g, "conv2d \"%s\": dilation %d", name, dilation);
+    node->at.dilation = dilation;
     return node;
 }
 
@@ -226,12 +236,24 @@ nn_node *nn_conv2d_zero(nn_graph *g, nn_node *x, const char *name, int out, int 
     return node;
 }
 
+nn_node *nn_conv2d_transposed(nn_graph *g, nn_node *x, const char *name, int out, int kernel, int stride)
+{
+    nn_node *node = graph_append_named(g, OP_CONV_TRANSPOSED, x, name, out);
+    if (!node) return NULL;
+    if (stride < 2 || stride > 8 || kernel < stride || kernel > 31 || (kernel - stride) % 2)
+        return graph_reject(g, "conv2d_transposed \"%s\": kernel %d, stride %d", name, kernel, stride);
+    node->at.kernel = kernel;
+    node->at.stride = stride;
+    node->at.dilation = 1;
+    return enlarge(node, stride);
+}
+
 nn_node *nn_linear(nn_graph *g, nn_node *x, const char *name, int out)
 {
     nn_node *node = graph_append_named(g, OP_LINEAR, x, name, out);
     if (!node) return NULL;
     if (x->reduction != NN_VECTOR) return graph_reject(g, "linear \"%s\": the input is not a vector", name);
-    node->at.kernel = node->at.stride = 1;
+    node->at.kernel = node->at.stride = node->at.dilation = 1;
     node->at.bias = true;
     return node;
 }

@@ -10,9 +10,9 @@
 enum { NN_MAX_INPUTS = 8 };
 
 typedef struct nn_attributes {
-    int kernel, stride, block, first, heads;
-    int reduction;   /* of the map that gather reads */
-    bool bias, zero; /* zero: initial weights of a convolution are 0 */
+    int kernel, stride, dilation, block, first, heads; /* dilation: of convolutions, 1: none */
+    int reduction;                                     /* of the map that gather reads */
+    bool bias, zero;                                   /* zero: initial weights of a convolution are 0 */
     float scale, shift;
     float fov, light_power;
     float weight;       /* of a loss */

@@ -57,6 +57,12 @@ nn_node *nn_conv2d(nn_graph *g, nn_node *x, const char *name, int out, int kerne
 /* Adds a convolution whose weights start at 0: its result is zero until it is trained, so that it can be added to a
  * network that is trained already. */
 nn_node *nn_conv2d_zero(nn_graph *g, nn_node *x, const char *name, int out, int kernel, int stride, nn_bias bias);
+/* Adds a convolution of stride 1 between whose taps are dilation - 1 pixels: padding is half of (k - 1) dilation. */
+nn_node *nn_conv2d_dilated(nn_graph *g, nn_node *x, const char *name, int out, int kernel, int dilation, nn_bias bias);
+/* Adds a transposed convolution, the adjoint of nn_conv2d with this kernel and stride, without bias (batch norm is to
+ * follow): parameter `name.weight` (in × out × k × k, as in PyTorch's ConvTranspose2d with padding (k - stride)/2,
+ * which must be whole). The result has size·stride. */
+nn_node *nn_conv2d_transposed(nn_graph *g, nn_node *x, const char *name, int out, int kernel, int stride);
 /* Adds a fully connected layer on vectors (1×1): `name.weight` out × in, `name.bias`. */
 nn_node *nn_linear(nn_graph *g, nn_node *x, const char *name, int out);
 /* Adds batch normalization per channel over N, H, W (Ioffe & Szegedy 2015); eps 1e-5, running statistics by

@@ -7,6 +7,7 @@ static const op_row rows[] = {
     [OP_COMPUTE] = {.name = "compute"},
     [OP_FLOAT] = {.name = "float"},
     [OP_CONV] = {.name = "conv2d", .is_conv = true, .has_params = true},
+    [OP_CONV_TRANSPOSED] = {.name = "conv2d_transposed", .has_params = true},
     [OP_LINEAR] = {.name = "linear", .is_conv = true, .has_params = true},
     [OP_NORM] = {.name = "batch_norm", .has_params = true},
     [OP_RELU] = {.name = "relu"},

@@ -11,6 +11,7 @@ typedef enum nn_op {
     OP_COMPUTE,
     OP_FLOAT,
     OP_CONV,
+    OP_CONV_TRANSPOSED,
     OP_LINEAR,
     OP_NORM,
     OP_RELU,

@@ -35,6 +35,10 @@ static param_spec weight_spec(const nn_node *node)
     param_spec spec = {
         .rank = node->op == OP_LINEAR ? 2 : 4, .shape = {out, in, k, k}, .trained = true, .zero = node->at.zero};
     spec.fan_in = (double)(in * k * k);
+    if (node->op == OP_CONV_TRANSPOSED) { /* each result gets a part of the kernel only */
+        spec.shape[0] = in, spec.shape[1] = out;
+        spec.fan_in /= (double)node->at.stride * node->at.stride;
+    }
     if (node->op == OP_LINEAR) spec.shape[2] = spec.shape[3] = 0;
     snprintf(spec.name, sizeof spec.name, "%s.weight", node->name);
     return spec;
@@ -44,7 +48,7 @@ static param_spec weight_spec(const nn_node *node)
 static int node_specs(const nn_node *node, param_spec specs[PARAMS_PER_NODE])
 {
     int count = 0;
-    if (op_is_conv(node->op)) {
+    if (op_is_conv(node->op) || node->op == OP_CONV_TRANSPOSED) {
         specs[count++] = weight_spec(node);
         if (node->at.bias) specs[count++] = vector_spec(node, "bias", 0, true);
     } else if (node->op == OP_NORM) {

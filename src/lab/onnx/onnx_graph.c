@@ -141,11 +141,26 @@ static void put_conv(onnx_graph *g, const nn_node *x)
     protobuf node = begin(x, "Conv");
     put_parameter(g, &node, of.weight);
     if (of.bias) put_parameter(g, &node, of.bias);
-    int64_t kernel = x->op == OP_CONV ? x->at.kernel : 1, stride = x->op == OP_CONV ? x->at.stride : 1;
-    int64_t before = (kernel - 1) / 2, behind = kernel - stride - before > 0 ? kernel - stride - before : 0;
+    const int64_t kernel = x->at.kernel, stride = x->at.stride, dilation = x->at.dilation;
+    const int64_t wide = (kernel - 1) * dilation + 1, before = (wide - 1) / 2, rest = wide - stride - before;
+    const int64_t behind = rest > 0 ? rest : 0;
     onnx_put_integers(&node, "kernel_shape", 2, (const int64_t[]){kernel, kernel});
     onnx_put_integers(&node, "strides", 2, (const int64_t[]){stride, stride});
+    if (dilation > 1) onnx_put_integers(&node, "dilations", 2, (const int64_t[]){dilation, dilation});
     onnx_put_integers(&node, "pads", 4, (const int64_t[]){before, before, behind, behind});
+    add(g, &node);
+}
+
+static void put_conv_transposed(onnx_graph *g, const nn_node *x)
+{
+    node_params of;
+    if (!find_params(g, x, &of)) return;
+    protobuf node = begin(x, "ConvTranspose");
+    put_parameter(g, &node, of.weight);
+    const int64_t kernel = x->at.kernel, stride = x->at.stride, around = (kernel - stride) / 2;
+    onnx_put_integers(&node, "kernel_shape", 2, (const int64_t[]){kernel, kernel});
+    onnx_put_integers(&node, "strides", 2, (const int64_t[]){stride, stride});
+    onnx_put_integers(&node, "pads", 4, (const int64_t[]){around, around, around, around});
     add(g, &node);
 }
 
@@ -307,6 +322,7 @@ static put_operation *const counterpart[OP_COUNT] = {
     [OP_COMPUTE] = put_nothing,
     [OP_FLOAT] = put_nothing,
     [OP_CONV] = put_conv,
+    [OP_CONV_TRANSPOSED] = put_conv_transposed,
     [OP_LINEAR] = put_conv,
     [OP_NORM] = put_norm,
     [OP_RELU] = put_plain,

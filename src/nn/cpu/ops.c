@@ -334,6 +334,7 @@ static const operation operations[] = {
     [OP_COMPUTE] = {.forward = cast_forward, .backward = cast_backward},
     [OP_FLOAT] = {.forward = cast_forward, .backward = cast_backward},
     [OP_CONV] = {.create = fastest_conv_create},
+    [OP_CONV_TRANSPOSED] = {.create = transposed_create},
     [OP_LINEAR] = {.create = fastest_conv_create},
     [OP_NORM] = {.create = norm_create},
     [OP_RELU] = {.forward = relu_forward, .backward = relu_backward, .reads = READS_OUT},

@@ -33,11 +33,11 @@ typedef struct dnn_convolution {
     dnnl_prop_kind_t kind;
     dnn_shape source, weights, bias, target, beside;
     bool has_bias;
-    bool has_beside;      /* forward only: a tensor is added, DNN_ARG_BESIDE */
-    bool relu;            /* forward only: applied to the result */
-    const char *avoided;  /* part of the name of an implementation to be avoided, or NULL */
-    const dnn_call *hint; /* for gradients: a forward description */
-    dnnl_dims_t strides, before, behind;
+    bool has_beside;                           /* forward only: a tensor is added, DNN_ARG_BESIDE */
+    bool relu;                                 /* forward only: applied to the result */
+    const char *avoided;                       /* part of the name of an implementation to be avoided, or NULL */
+    const dnn_call *hint;                      /* for gradients: a forward description */
+    dnnl_dims_t strides, gaps, before, behind; /* gaps: pixels between the kernel's taps */
 } dnn_convolution;
 
 status dnn_describe(dnn_call *call, const dnn_context *context, const dnn_convolution *wanted);
@@ -56,6 +56,8 @@ status dnn_make_reorder_from(dnn_call *call, const dnn_context *context, dnn_lay
                              const dnn_shape *to, void *target);
 status dnn_make_reorder_to(dnn_call *call, const dnn_context *context, const dnn_shape *from, float *source,
                            dnn_layout to, void *target);
+/* Tells whether a call has been made. */
+bool dnn_is_made(const dnn_call *call);
 status dnn_run(const dnn_call *call, const dnn_context *context);
 void dnn_release(dnn_call *call);
 

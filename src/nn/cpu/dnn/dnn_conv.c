@@ -36,10 +36,12 @@ static dnn_shape bias_shape(const nn_step *step)
     return (dnn_shape){1, {step->out.c}, dnnl_f32, dnnl_a};
 }
 
-/* Returns the convolution with its strides and padding: (k - 1)/2 before, the rest behind. */
+/* Returns the convolution with its strides and padding: (k - 1)/2 before, the rest behind, of the kernel as wide as
+ * dilation makes it. */
 static dnn_convolution convolution_of(const nn_step *step, dnnl_prop_kind_t kind)
 {
-    int k = step->at.kernel, stride = step->at.stride, before = (k - 1) / 2, behind = k - stride - before;
+    const int gap = step->at.dilation - 1, k = step->at.kernel + (step->at.kernel - 1) * gap, stride = step->at.stride;
+    int before = (k - 1) / 2, behind = k - stride - before;
     if (behind < 0) behind = 0; /* a kernel smaller than its stride skips pixels */
     return (dnn_convolution){
         .kind = kind,
@@ -48,6 +50,7 @@ static dnn_convolution convolution_of(const nn_step *step, dnnl_prop_kind_t kind
         .bias = bias_shape(step),
         .target = dnn_activation(&step->out, step->compute),
         .strides = {stride, stride},
+        .gaps = {gap, gap},
         .before = {before, before},
         .behind = {behind, behind},
     };
@@ -249,20 +252,15 @@ static status make_conversions(const nn_step *step, conv *state)
     return dnn_make_reorder_to(&state->convert_back, context, &state->plain, master, w, state->data_weights);
 }
 
-static bool is_made(const dnn_call *conversion)
-{
-    return conversion->primitive || conversion->packing;
-}
-
 static status conv_refresh(nn_step *step)
 {
     conv *state = step->state;
-    status s = is_made(&state->convert) ? OK : make_conversions(step, state);
+    status s = dnn_is_made(&state->convert) ? OK : make_conversions(step, state);
     if (s != OK) return s;
     /* into the forward scratch, which is free between runs */
     conv_make_weights(step, step->forward_space, state->folded_bias);
     s = dnn_run(&state->convert, step->context);
-    if (s == OK && is_made(&state->convert_back)) s = dnn_run(&state->convert_back, step->context);
+    if (s == OK && dnn_is_made(&state->convert_back)) s = dnn_run(&state->convert_back, step->context);
     return s;
 }
 

@@ -20,13 +20,13 @@ static dnnl_status_t describe_operation(const dnn_convolution *c, const memories
     const dnnl_memory_desc_t *bias = c->has_bias ? &m->bias : NULL;
     const dnnl_alg_kind_t direct = dnnl_convolution_direct;
     if (c->kind == dnnl_backward_data)
-        return dnnl_convolution_backward_data_desc_init(out, direct, &m->source, &m->weights, &m->target, c->strides,
-                                                        c->before, c->behind);
+        return dnnl_dilated_convolution_backward_data_desc_init(out, direct, &m->source, &m->weights, &m->target,
+                                                                c->strides, c->gaps, c->before, c->behind);
     if (c->kind == dnnl_backward_weights)
-        return dnnl_convolution_backward_weights_desc_init(out, direct, &m->source, &m->weights, bias, &m->target,
-                                                           c->strides, c->before, c->behind);
-    return dnnl_convolution_forward_desc_init(out, c->kind, direct, &m->source, &m->weights, bias, &m->target,
-                                              c->strides, c->before, c->behind);
+        return dnnl_dilated_convolution_backward_weights_desc_init(
+            out, direct, &m->source, &m->weights, bias, &m->target, c->strides, c->gaps, c->before, c->behind);
+    return dnnl_dilated_convolution_forward_desc_init(out, c->kind, direct, &m->source, &m->weights, bias, &m->target,
+                                                      c->strides, c->gaps, c->before, c->behind);
 }
 
 /* An iteration over implementations; the iterator keeps reading the operation, so that both stay together. */
@@ -77,21 +77,20 @@ typedef struct walk {
 static dnnl_status_t first_of(const dnn_convolution *c, const memories *m, dnnl_primitive_attr_t attributes,
                               dnnl_engine_t engine, walk *w, dnnl_primitive_desc_t *found)
 {
-    const dnnl_dims_t dilation = {0};
     const dnnl_alg_kind_t direct = dnnl_convolution_direct;
     const dnnl_memory_desc_t bias = c->has_bias ? m->bias : NULL;
     const_dnnl_primitive_desc_t hint = c->hint ? c->hint->description : NULL;
     (void)w;
     if (c->kind == dnnl_backward_data)
         return dnnl_convolution_backward_data_primitive_desc_create(found, engine, direct, m->source, m->weights,
-                                                                    m->target, c->strides, dilation, c->before,
+                                                                    m->target, c->strides, c->gaps, c->before,
                                                                     c->behind, hint, attributes);
     if (c->kind == dnnl_backward_weights)
         return dnnl_convolution_backward_weights_primitive_desc_create(found, engine, direct, m->source, m->weights,
-                                                                       bias, m->target, c->strides, dilation, c->before,
+                                                                       bias, m->target, c->strides, c->gaps, c->before,
                                                                        c->behind, hint, attributes);
     return dnnl_convolution_forward_primitive_desc_create(found, engine, c->kind, direct, m->source, m->weights, bias,
-                                                          m->target, c->strides, dilation, c->before, c->behind,
+                                                          m->target, c->strides, c->gaps, c->before, c->behind,
                                                           attributes);
 }
 

@@ -73,7 +73,7 @@ status cpu_measure_peak(void *context, nn_type type, nn_peak *out)
                        .gradient = new_written(count * sizeof(float))};
     nn_tensor tensor = {.type = type, .n = BATCH, .h = SIZE, .w = SIZE, .c = CHANNELS};
     nn_step step = {.op = OP_CONV,
-                    .at = {.kernel = KERNEL, .stride = 1},
+                    .at = {.kernel = KERNEL, .stride = 1, .dilation = 1},
                     .compute = type,
                     .train = true,
                     .backs = true,

@@ -17,6 +17,9 @@ status conv_backward_weights(nn_step *step);
 bool winograd_suits(const nn_step *step);
 status winograd_create(nn_step *step);
 
+/* Creates a transposed convolution, by oneDNN's gradients of a convolution. */
+status transposed_create(nn_step *step);
+
 status norm_create(nn_step *step);
 
 /* Creates any of these steps, or one computed by nn/cpu/kernels/kernels.h, by the step's operation. */

@@ -28,8 +28,8 @@ static bool is_whole(int channels)
 
 bool winograd_suits(const nn_step *step)
 {
-    return step->at.kernel == 3 && step->at.stride == 1 && step->in[0].type == step->compute &&
-           is_whole(step->in[0].c) && is_whole(step->out.c);
+    return step->at.kernel == 3 && step->at.stride == 1 && step->at.dilation == 1 &&
+           step->in[0].type == step->compute && is_whole(step->in[0].c) && is_whole(step->out.c);
 }
 
 static void release(nn_step *step)
