@@ -4,6 +4,8 @@
 #include <stdio.h>
 
 #include "model/blocks.h"
+#include "model/model_network.h"
+#include "model/rivals/rival.h"
 #include "model/sh_bands.h"
 #include "optics/light.h"
 
@@ -32,26 +34,6 @@ const char *const model_features[MODEL_FEATURES + 1] = {
     "encoder_features0",  "encoder_features1",  "encoder_features2",  "encoder_features3",  "encoder_features4",
     "material_features0", "material_features1", "material_features2", "material_features3", NULL};
 
-typedef struct maps {
-    nn_node *albedo, *normal, *roughness, *depth; /* float, full size */
-} maps;
-
-typedef struct network {
-    nn_graph *g;
-    const model_config *config;
-    nn_node *mask, *light_position;
-    nn_node *sight, *lens;               /* NULL unless "lighting" is "any" */
-    nn_node *pixels;                     /* what the decoder by pixel sees of each picture; NULL unless "several" */
-    nn_node *seen[MODEL_LEVELS];         /* encoder's features of each picture */
-    nn_node *encoder[MODEL_LEVELS];      /* those of the object: of several pictures together, else the same */
-    nn_node *material[MODEL_LEVELS - 1]; /* features of the material decoder, or the sum of those of four decoders */
-    maps maps;
-    nn_node *light;                          /* the target's lighting code */
-    nn_node *environment_code, *environment; /* NULL unless for both lights */
-    nn_node *lights, *visibility;            /* NULL unless "lighting" is "any" */
-    nn_node *direct, *indirect, *relit_direct, *relit_brdf;
-} network;
-
 /* Adds model_decode_sh to the graph. */
 static nn_node *decode_sh(nn_graph *g, nn_node *code)
 {
@@ -61,14 +43,12 @@ static nn_node *decode_sh(nn_graph *g, nn_node *code)
     return nn_concat(g, parts, SH_BANDS);
 }
 
-/* Adds depth = 1 / (0.4 (y + 1) + 0.25) with y = 3 tanh(x) + 2: from 0.38 to 4. With a plain tanh the nearest depth
- * would be 0.95, behind the front of an object at 1. */
-static nn_node *shape_depth(nn_graph *g, nn_node *x)
+nn_node *model_shape_depth(nn_graph *g, nn_node *x)
 {
-    return nn_reciprocal(g, nn_tanh(g, x), 1.2f, 1.45f);
+    return nn_reciprocal(g, x, 1.2f, 1.45f);
 }
 
-static void decode_material(network *n, const char *name, nn_node *features[MODEL_LEVELS - 1])
+static void decode_material(model_network *n, const char *name, nn_node *features[MODEL_LEVELS - 1])
 {
     block_decoder_inputs in = {.name = name,
                                .widths = n->config->widths,
@@ -79,7 +59,7 @@ static void decode_material(network *n, const char *name, nn_node *features[MODE
     block_decoder(n->g, &in, features);
 }
 
-static void material_by_one_decoder(network *n)
+static void material_by_one_decoder(model_network *n)
 {
     nn_graph *g = n->g;
     decode_material(n, "material", n->material);
@@ -91,10 +71,10 @@ static void material_by_one_decoder(network *n)
     n->maps.albedo = nn_tanh(g, nn_slice(g, y, 0, 3));
     n->maps.normal = nn_normalize(g, nn_slice(g, y, 3, 3));
     n->maps.roughness = nn_tanh(g, nn_slice(g, y, 6, 1));
-    n->maps.depth = shape_depth(g, nn_slice(g, y, 7, 1));
+    n->maps.depth = model_shape_depth(g, nn_tanh(g, nn_slice(g, y, 7, 1)));
 }
 
-static void material_by_four_decoders(network *n)
+static void material_by_four_decoders(model_network *n)
 {
     nn_graph *g = n->g;
     static const char *const decoders[4] = {"material_albedo", "material_normal", "material_roughness",
@@ -113,10 +93,10 @@ static void material_by_four_decoders(network *n)
     n->maps.albedo = nn_tanh(g, y[0]);
     n->maps.normal = nn_normalize(g, y[1]);
     n->maps.roughness = nn_tanh(g, y[2]);
-    n->maps.depth = shape_depth(g, y[3]);
+    n->maps.depth = model_shape_depth(g, nn_tanh(g, y[3]));
 }
 
-static void relight_by_network(network *n)
+static void relight_by_network(model_network *n)
 {
     nn_graph *g = n->g;
     /* three fully connected layers, repeated over the bottleneck (Sang & Chandraker 2020) */
@@ -140,7 +120,7 @@ static void relight_by_network(network *n)
 
 /* Adds a vector predicted from the encoder's two deepest features, averaged over the image: the photograph's light. It
  * is scaled to be small at first, lest a bright prediction teach the maps to be black. */
-static nn_node *estimate_light(network *n, const char *first, const char *second, int values)
+static nn_node *estimate_light(model_network *n, const char *first, const char *second, int values)
 {
     nn_graph *g = n->g;
     nn_node *parts[2];
@@ -158,8 +138,8 @@ typedef struct first_bounce {
 
 /* Adds the network that predicts the residual light of bounces 2 and up (under an environment also its shadows), from
  * the image of bounce 1 and the maps. */
-static nn_node *global_illumination(nn_graph *g, const model_config *config, const first_bounce *light, const maps *m,
-                                    nn_node *mask)
+static nn_node *global_illumination(nn_graph *g, const model_config *config, const first_bounce *light,
+                                    const model_maps *m, nn_node *mask)
 {
     nn_node *parts[7] = {light->direct, m->albedo, m->normal, m->roughness, m->depth, mask, light->environment};
     /* maps are undefined outside the mask */
@@ -177,20 +157,20 @@ static nn_node *global_illumination(nn_graph *g, const model_config *config, con
     return nn_gate(g, nn_scale_shift(g, y, 0.1f, 0.0f), mask);
 }
 
-static nn_node *render(network *n, nn_node *light)
+nn_node *model_render(const model_network *n, nn_node *light)
 {
     nn_render_inputs in = {n->maps.albedo, n->maps.normal, n->maps.roughness, n->maps.depth, n->mask, light, n->lens};
     return nn_render(n->g, &in, CAMERA_FOV, LIGHT_POWER);
 }
 
-static nn_node *render_environment(network *n, nn_node *code)
+static nn_node *render_environment(model_network *n, nn_node *code)
 {
     return nn_environment(n->g, n->maps.albedo, n->maps.normal, n->mask, decode_sh(n->g, code));
 }
 
 /* Adds what shows where each picture's strongest lamp is blocked: by the object's features and, of several pictures,
  * its own. */
-static nn_node *estimate_visibility(network *n)
+static nn_node *estimate_visibility(model_network *n)
 {
     nn_graph *g = n->g;
     nn_node *x = n->material[0];
@@ -200,17 +180,17 @@ static nn_node *estimate_visibility(network *n)
     return nn_sigmoid(g, block_head(g, x, "visibility.head", 1));
 }
 
-static void add_light(network *n)
+static void add_light(model_network *n)
 {
     n->light = nn_input(n->g, "light", model_light_size(n->config), NN_VECTOR);
 }
 
-static void build_lights(network *n, model_part part)
+static void build_lights(model_network *n, model_part part)
 {
     nn_graph *g = n->g;
     bool both = n->config->lighting == MODEL_LIGHT_BOTH, any = n->config->lighting == MODEL_LIGHT_ANY;
     bool by_network = n->config->relight == MODEL_RELIGHT_NETWORK;
-    n->direct = render(n, nn_scale_shift(g, n->light_position, 0.0f, 0.0f)); /* the flash is at the origin */
+    n->direct = model_render(n, nn_scale_shift(g, n->light_position, 0.0f, 0.0f)); /* the flash is at the origin */
     if (both) {
         n->environment_code = estimate_light(n, "environment.fc1", "environment.fc2", MODEL_SH);
         n->environment = render_environment(n, n->environment_code);
@@ -223,19 +203,12 @@ static void build_lights(network *n, model_part part)
     if (both || by_network) add_light(n);
     if (by_network) relight_by_network(n);
     if (part == MODEL_TRAINING && by_network) return;
-    n->relit_brdf = render(n, n->light_position);
+    n->relit_brdf = model_render(n, n->light_position);
     if (both) n->relit_brdf = nn_add(g, n->relit_brdf, render_environment(n, nn_slice(g, n->light, 3, MODEL_SH)));
 }
 
-/* Adds an input that is the same for all pictures of an object. */
-static nn_node *object_input(const network *n, const char *name, int channels, int reduction)
-{
-    return n->config->several ? nn_group_input(n->g, name, channels, reduction)
-                              : nn_input(n->g, name, channels, reduction);
-}
-
 /* Adds the encoder, which sees every picture. */
-static void encode(network *n)
+static void encode(model_network *n)
 {
     nn_graph *g = n->g;
     const model_config *c = n->config;
@@ -252,13 +225,13 @@ static void encode(network *n)
     }
 }
 
-static void build_network(network *n, model_part part)
+static void build_network(model_network *n, model_part part)
 {
-    n->mask = object_input(n, "mask", 1, 1);
-    n->light_position = object_input(n, "light_position", 3, NN_VECTOR);
+    n->mask = model_object_input(n, "mask", 1, 1);
+    n->light_position = model_object_input(n, "light_position", 3, NN_VECTOR);
     if (n->config->lighting == MODEL_LIGHT_ANY) {
         n->sight = nn_input(n->g, "sight", MODEL_SIGHT, 1);
-        n->lens = object_input(n, "lens", 3, NN_VECTOR);
+        n->lens = model_object_input(n, "lens", 3, NN_VECTOR);
     }
     encode(n);
     if (n->config->lighting == MODEL_LIGHT_ANY) n->lights = estimate_light(n, "lights.fc1", "lights.fc2", MODEL_LIGHTS);
@@ -276,7 +249,7 @@ static int feature_level(int feature)
 }
 
 /* Returns where one of model_features is stored in the network. */
-static nn_node **feature_node(network *n, int feature)
+static nn_node **feature_node(model_network *n, int feature)
 {
     return feature < MODEL_LEVELS ? &n->encoder[feature] : &n->material[feature_level(feature)];
 }
@@ -294,13 +267,13 @@ static int feature_count(const model_config *config)
     return config->feature_sharing ? MODEL_FEATURES : MODEL_LEVELS;
 }
 
-static void name_features(network *n)
+static void name_features(model_network *n)
 {
     for (int i = 0; i < feature_count(n->config); i++)
         nn_output(n->g, *feature_node(n, i), model_features[i]);
 }
 
-static void name_outputs(const network *n)
+static void name_outputs(const model_network *n)
 {
     nn_graph *g = n->g;
     if (n->config->only_lights) {
@@ -321,86 +294,21 @@ static void name_outputs(const network *n)
     if (n->relit_brdf) nn_output(g, n->relit_brdf, "relit_brdf");
 }
 
-/* Adds the losses of relighting: by the network, and by the maps' BRDF where that has a loss of its own. */
-static void add_relighting_losses(network *n, model_part part, nn_node *mask)
-{
-    nn_graph *g = n->g;
-    bool both = n->relit_direct && n->relit_brdf;
-    nn_node *relit = n->relit_direct ? n->relit_direct : n->relit_brdf,
-            *relit_true = object_input(n, "relit_true", 3, 1);
-    nn_masked_l2(g, relit, relit_true, mask, "relight", 1.0f);
-    if (both) nn_masked_l2(g, n->relit_brdf, relit_true, mask, "relight_brdf", 1.0f);
-    if (part != MODEL_TRAINING_SSIM) return;
-    nn_masked_dssim(g, relit, relit_true, mask, "relight_ssim", 1.0f);
-    if (both) nn_masked_dssim(g, n->relit_brdf, relit_true, mask, "relight_brdf_ssim", 1.0f);
-}
-
-/* Adds the losses of the predicted light and of the visibility of the strongest lamp. A vector's weight depends on how
- * much there is to predict. */
-static void add_light_losses(network *n)
-{
-    nn_graph *g = n->g;
-    nn_node *truth = nn_input(g, "lights_true", MODEL_LIGHTS, NN_VECTOR);
-    nn_node *one = nn_scale_shift(g, nn_slice(g, truth, 0, 1), 0.0f, 1.0f);
-    nn_node *lamp_weight = nn_input(g, "lamp_weight", 1, NN_VECTOR),
-            *rest_weight = nn_input(g, "rest_weight", 1, NN_VECTOR);
-    const struct {
-        const char *name;
-        int first, count;
-        nn_node *weight;
-    } parts[] = {{"flash", MODEL_LIGHTS_FLASH, 1, one},
-                 {"lamp", MODEL_LIGHTS_LAMP, 3, one},
-                 {"lamp_distance", MODEL_LIGHTS_DISTANCE, 1, lamp_weight},
-                 {"lamp_light", MODEL_LIGHTS_STRENGTH, 3, one},
-                 {"environment", MODEL_LIGHTS_REST, MODEL_SH, rest_weight}};
-    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
-        nn_masked_l2(g, nn_slice(g, n->lights, parts[i].first, parts[i].count),
-                     nn_slice(g, truth, parts[i].first, parts[i].count), parts[i].weight, parts[i].name, 0.25f);
-    if (!n->visibility) return;
-    nn_masked_l2(g, n->visibility, nn_input(g, "visibility_true", 1, 1), nn_input(g, "visibility_weight", 1, 1),
-                 "visibility", 1.0f);
-}
-
-/* Adds the paper's losses, weight 2 for normals and 1 for the rest, and the additional ones. */
-static void add_losses(network *n, model_part part)
-{
-    nn_graph *g = n->g;
-    if (n->config->only_lights) {
-        add_light_losses(n);
-        return;
-    }
-    nn_node *mask = object_input(n, "loss_mask", 1, 1);
-    nn_node *roughness = object_input(n, "roughness_true", 1, 1);
-    nn_node *direct = object_input(n, "direct_true", 3, 1);
-    nn_masked_l2(g, n->maps.albedo, object_input(n, "albedo_true", 3, 1), mask, "albedo", 1.0f);
-    nn_masked_l2(g, n->maps.normal, object_input(n, "normal_true", 3, 1), mask, "normal", 2.0f);
-    nn_masked_l2(g, n->maps.depth, object_input(n, "depth_true", 1, 1), mask, "depth", 1.0f);
-    nn_masked_l2(g, n->maps.roughness, roughness, mask, "roughness", 1.0f);
-    nn_masked_gradient_l2(g, n->maps.roughness, roughness, mask, "roughness_gradient", 1.0f);
-    nn_masked_l2(g, n->direct, direct, mask, "direct", 1.0f);
-    if (n->indirect) {
-        nn_masked_l2(g, n->indirect, object_input(n, "indirect_true", 3, 1), mask, "indirect", 1.0f);
-        nn_node *image = nn_add(g, n->direct, n->indirect);
-        nn_masked_l2(g, image, object_input(n, "reconstruction_true", 3, 1), mask, "reconstruction", 1.0f);
-    }
-    if (n->environment) {
-        nn_node *one = nn_scale_shift(g, nn_slice(g, n->light_position, 0, 1), 0.0f, 1.0f);
-        nn_node *code = nn_input(g, "environment_true", MODEL_SH, NN_VECTOR);
-        nn_masked_l2(g, n->environment_code, code, one, "environment", 1.0f);
-    }
-    if (n->lights) add_light_losses(n);
-    add_relighting_losses(n, part, mask);
-}
-
 static status build_indirect(nn_graph *g, const model_config *config)
 {
     if (!config->global_illumination)
         return fail(MERLIN_WRONG_USE, "model \"%s\" has no global-illumination network", config->name);
     nn_node *direct = nn_input(g, "direct", 3, 1);
-    maps m = {.albedo = nn_input(g, "albedo", 3, 1)};
+    model_maps m = {.albedo = nn_input(g, "albedo", 3, 1)};
     m.normal = nn_input(g, "normal", 3, 1);
     m.roughness = nn_input(g, "roughness", 1, 1);
     m.depth = nn_input(g, "depth", 1, 1);
+    if (config->rival) {
+        const model_network n = {
+            .g = g, .config = config, .mask = nn_input(g, "mask", 1, 1), .maps = m, .direct = direct};
+        nn_output(g, rival_bounces(&n), "indirect");
+        return OK;
+    }
     first_bounce first = {direct, config->lighting == MODEL_LIGHT_BOTH ? nn_input(g, "environment", 3, 1) : NULL};
     nn_output(g, global_illumination(g, config, &first, &m, nn_input(g, "mask", 1, 1)), "indirect");
     return OK;
@@ -410,7 +318,8 @@ static status build_relighting(nn_graph *g, const model_config *config)
 {
     if (config->relight != MODEL_RELIGHT_NETWORK)
         return fail(MERLIN_WRONG_USE, "model \"%s\" has no relighting decoder", config->name);
-    network n = {.g = g, .config = config, .mask = nn_input(g, "mask", 1, 1)};
+    if (config->rival) return fail(MERLIN_WRONG_USE, "model \"%s\" relights with all of its stages", config->name);
+    model_network n = {.g = g, .config = config, .mask = nn_input(g, "mask", 1, 1)};
     for (int i = 0; i < feature_count(config); i++) {
         int level = feature_level(i);
         *feature_node(&n, i) = nn_compute(g, nn_input(g, model_features[i], config->widths[level], 2 << level));
@@ -432,11 +341,14 @@ status model_build(const model_config *config, model_part part, nn_graph **out)
     } else if (part == MODEL_RELIGHT) {
         s = build_relighting(g, config);
     } else {
-        network n = {.g = g, .config = config};
-        build_network(&n, part);
+        model_network n = {.g = g, .config = config};
+        if (config->rival)
+            rival_build(&n, part);
+        else
+            build_network(&n, part);
         name_outputs(&n);
-        if (part == MODEL_MAPS) name_features(&n);
-        if (part != MODEL_WHOLE && part != MODEL_MAPS) add_losses(&n, part);
+        if (part == MODEL_MAPS && !config->rival) name_features(&n);
+        if (part != MODEL_WHOLE && part != MODEL_MAPS) model_add_losses(&n, part);
     }
     if (s != OK) {
         nn_graph_free(g);

@@ -12,6 +12,7 @@ enum { MAX_WIDTH = 640, MAX_BLOCKS = 9 };
 
 static const char *const relight_words[] = {"network", "brdf"};
 static const char *const lighting_words[] = {"point", "both", "any"};
+static const char *const rival_words[] = {"li", "sang"};
 
 static status check_widths(const char *where, const char *key, const int *widths)
 {
@@ -29,11 +30,31 @@ static status check_name(const char *name, const char *where)
     return fail(MERLIN_BAD_INPUT, "%s: \"name\" may have letters, digits, '.', '_' and '-'", where);
 }
 
+/* Reads a rival, and sets what the other keys would say of it. */
+static status read_rival(json_object *o, model_config *out)
+{
+    int rival = 0;
+    status s = json_choice(o, "rival", rival_words, 2, &rival);
+    if (s == OK) s = json_int(o, "cascades", 0, 2, &out->cascades);
+    out->rival = rival ? MODEL_SANG : MODEL_LI;
+    out->input_global = true;
+    out->material_decoders = out->rival == MODEL_LI ? 4 : 1;
+    out->feature_sharing = out->rival == MODEL_SANG;
+    out->relight = out->rival == MODEL_SANG ? MODEL_RELIGHT_NETWORK : MODEL_RELIGHT_BRDF;
+    out->global_illumination = out->rival == MODEL_LI;
+    out->lighting = MODEL_LIGHT_POINT;
+    return s;
+}
+
 static status read_keys(json_object *o, const char *where, model_config *out)
 {
     int relight = 0, lighting = 0;
     status s = json_text(o, "name", out->name, sizeof out->name);
     if (s == OK) s = check_name(out->name, where);
+    if (s == OK && json_has(o, "rival")) {
+        s = read_rival(o, out);
+        return s == OK ? json_finish(o) : s;
+    }
     if (s == OK) s = json_bool(o, "input_global", &out->input_global);
     if (s == OK) s = json_int(o, "material_decoders", 1, 4, &out->material_decoders);
     if (s == OK && out->material_decoders != 1 && out->material_decoders != 4)
@@ -99,6 +120,11 @@ static const char *word(bool yes)
 char *model_config_write(const model_config *c)
 {
     char *text = NULL;
+    if (c->rival) {
+        int written = asprintf(&text, "{\"name\": \"%s\", \"rival\": \"%s\", \"cascades\": %d}", c->name,
+                               rival_words[c->rival == MODEL_SANG], c->cascades);
+        return written < 0 ? NULL : text;
+    }
     const int *w = c->widths, *gi = c->gi_widths, *e = c->encoder_blocks, *m = c->material_blocks;
     int length = asprintf(
         &text,

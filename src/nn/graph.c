@@ -326,6 +326,11 @@ nn_node *nn_add(nn_graph *g, nn_node *a, nn_node *b)
     return node && matches(node, b, true) ? node : NULL;
 }
 
+nn_node *nn_stop(nn_graph *g, nn_node *x)
+{
+    return append1(g, OP_STOP, x);
+}
+
 nn_node *nn_gate(nn_graph *g, nn_node *x, nn_node *gate)
 {
     nn_node *node = append(g, OP_GATE, (nn_node *[]){x, gate}, 2);

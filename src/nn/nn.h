@@ -77,6 +77,8 @@ nn_node *nn_sigmoid(nn_graph *g, nn_node *x);
 nn_node *nn_concat(nn_graph *g, nn_node *const *x, int count);
 nn_node *nn_slice(nn_graph *g, nn_node *x, int first, int channels);
 nn_node *nn_add(nn_graph *g, nn_node *a, nn_node *b);
+/* Passes x on, but no gradient back: what follows learns without changing what made x. */
+nn_node *nn_stop(nn_graph *g, nn_node *x);
 /* Multiplies x by a gate of one channel: attention (Oktay et al. 2018). */
 nn_node *nn_gate(nn_graph *g, nn_node *x, nn_node *gate);
 nn_node *nn_scale_shift(nn_graph *g, nn_node *x, float scale, float shift);

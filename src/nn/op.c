@@ -16,6 +16,7 @@ static const op_row rows[] = {
     [OP_CONCAT] = {.name = "concat"},
     [OP_SLICE] = {.name = "slice"},
     [OP_ADD] = {.name = "add"},
+    [OP_STOP] = {.name = "stop", .gradients = -1},
     [OP_GATE] = {.name = "gate"},
     [OP_SCALE_SHIFT] = {.name = "scale_shift"},
     [OP_UPSAMPLE_BILINEAR] = {.name = "upsample_bilinear"},

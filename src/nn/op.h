@@ -20,6 +20,7 @@ typedef enum nn_op {
     OP_CONCAT,
     OP_SLICE,
     OP_ADD,
+    OP_STOP,
     OP_GATE,
     OP_SCALE_SHIFT,
     OP_UPSAMPLE_BILINEAR,
@@ -50,7 +51,7 @@ typedef struct op_row {
     bool is_conv;     /* convolution and fully connected: a weight and maybe a bias */
     bool is_loss;
     bool has_params;
-    int gradients; /* number of its inputs, from the first, that a gradient flows to; 0: all */
+    int gradients; /* number of its inputs, from the first, that a gradient flows to; 0: all, -1: none */
 } op_row;
 
 const op_row *op_row_of(nn_op op);

@@ -11,16 +11,11 @@ def hashed(name, count):
     seed = 2166136261
     for byte in name.encode():
         seed = (seed ^ byte) * 16777619 & 0xFFFFFFFF
-    out = []
-    for i in range(count):
-        x = (seed + i * 0x9E3779B9) & 0xFFFFFFFF
-        x ^= x >> 16
-        x = x * 0x85EBCA6B & 0xFFFFFFFF
-        x ^= x >> 13
-        x = x * 0xC2B2AE35 & 0xFFFFFFFF
-        x ^= x >> 16
-        out.append((x >> 8) * 2.0**-23 - 1)
-    return torch.tensor(out, dtype=torch.float64)
+    x = (seed + torch.arange(count, dtype=torch.int64) * 0x9E3779B9) & 0xFFFFFFFF
+    x = (x ^ x >> 16) * 0x85EBCA6B & 0xFFFFFFFF  # int64 wraps around, which leaves the low bits as they are
+    x = (x ^ x >> 13) * 0xC2B2AE35 & 0xFFFFFFFF
+    x = x ^ x >> 16
+    return (x >> 8).to(torch.float64) * 2.0**-23 - 1
 
 
 def as_float(x):

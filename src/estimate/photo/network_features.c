@@ -8,10 +8,12 @@
 #include "optics/orientation.h"
 
 struct network_features {
-    img mask;
+    img photo, mask; /* photo: for a rival, whose stages all relight; else empty */
     int count;
-    view_features views[ORIENTATIONS];
+    view_features views[ORIENTATIONS]; /* empty for a rival */
 };
+
+static const char *const relit_outputs[] = {"relit_direct", NULL};
 
 static status extract_features(network *n, const network_subject *at, int view, view_features *out)
 {
@@ -30,9 +32,11 @@ status network_features_new(network *n, const img *photo, const img *mask, const
     network_features *seen = calloc(1, sizeof *seen);
     if (!seen) return fail(MERLIN_NO_MEMORY, "no memory for what the network sees");
     seen->count = views;
+    const bool rival = n->config.rival != MODEL_NO_RIVAL;
     status s = img_copy(&seen->mask, mask);
+    if (s == OK && rival) s = img_copy(&seen->photo, photo);
     pthread_mutex_lock(&n->lock);
-    for (int view = 0; view < views && s == OK; view++)
+    for (int view = 0; view < views && s == OK && !rival; view++)
         s = extract_features(n, &at, view, &seen->views[view]);
     pthread_mutex_unlock(&n->lock);
     if (s != OK)
@@ -47,6 +51,7 @@ void network_features_free(network_features *features)
     if (!features) return;
     for (int view = 0; view < features->count; view++)
         view_features_free(&features->views[view]);
+    img_free(&features->photo);
     img_free(&features->mask);
     free(features);
 }
@@ -55,10 +60,15 @@ void network_features_free(network_features *features)
 static status relight_view(network *n, const network_features *features, const illumination *light, int view, img *mean)
 {
     img relit = {0};
-    status s = network_compile(n, MODEL_RELIGHT, NULL, mean->width, &n->relit);
+    const bool rival = n->config.rival != MODEL_NO_RIVAL;
+    status s = rival ? network_compile(n, MODEL_WHOLE, relit_outputs, mean->width, &n->relit)
+                     : network_compile(n, MODEL_RELIGHT, NULL, mean->width, &n->relit);
     if (s != OK) return s;
     nn_program *p = n->relit.program;
-    view_features_put(&features->views[view], p, 0);
+    if (rival)
+        view_put_photo(p, 0, view, &features->photo);
+    else
+        view_features_put(&features->views[view], p, 0);
     view_put_mask(p, 0, view, &features->mask);
     view_put_light(p, &n->config, 0, view, light);
     s = nn_forward(p);

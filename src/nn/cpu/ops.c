@@ -343,6 +343,7 @@ static const operation operations[] = {
     [OP_CONCAT] = {.forward = concat_forward, .backward = concat_backward},
     [OP_SLICE] = {.forward = slice_forward, .backward = slice_backward},
     [OP_ADD] = {.forward = add_forward, .backward = add_backward},
+    [OP_STOP] = {.forward = cast_forward, .backward = cast_backward}, /* no gradient ever reaches it */
     [OP_GATE] = {.forward = gate_forward, .backward = gate_backward, .reads = READS_IN},
     [OP_SCALE_SHIFT] = {.forward = scale_shift_forward, .backward = scale_shift_backward},
     [OP_UPSAMPLE_BILINEAR] = {.forward = upsample_bilinear_forward, .backward = upsample_bilinear_backward},

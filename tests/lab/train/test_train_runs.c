@@ -73,6 +73,9 @@ static const struct run {
     {"table1/6", 0x7703535ab573dad6},
     {"table1/7", 0x0375515b11a79daa},
     {"table1/8", 0xdf77256158677df3},
+    {"table2/li", 0xbbb1c9d0218d99af},
+    {"table2/sang", 0x09f1067db8addb8f},
+    {"merlin-any/07-128", 0xf269b25598af5e61},
 };
 enum { RUNS = sizeof runs / sizeof *runs };
 
