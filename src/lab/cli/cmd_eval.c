@@ -28,6 +28,7 @@ static const char help[] =
     "       merlin-lab eval several --data DIR [options]\n"
     "       merlin-lab eval unknown [--data DIR] [options]\n"
     "       merlin-lab eval pictures FOLDER... [options]\n"
+    "       merlin-lab eval table1|table2 --data DIR WEIGHTS... [options]\n"
     "       merlin-lab eval photos PHOTO|FOLDER... --model W [--model W2] -o FILE.png\n\n"
     "Measures what merlin estimate and merlin relight make by a model of samples it was not trained on (a folder made "
     "by\n"
@@ -40,7 +41,7 @@ static const char help[] =
     "what more pixels add to an estimate's shape, what an estimate is worth by the kind of light and from every "
     "picture "
     "of a\n"
-    "capture, and photographs taken apart by several weights side by side.\n\n"
+    "capture, the paper's tables, and photographs taken apart by several weights side by side.\n\n"
     "  --data DIR         held-out samples\n"
     "  --model W          weights to measure: a file, or merlin-point, merlin-env or merlin-any\n"
     "  --means-file FILE  mean maps of the training data; without it those of the held-out samples are taken\n"
@@ -187,18 +188,19 @@ static int run_evaluation(request *r)
     return 0;
 }
 
+/* Verbs that have a file of their own. */
+static const struct {
+    const char *name;
+    int (*run)(int argc, char **argv);
+} verbs[] = {{"stereo", eval_stereo}, {"solvers", eval_solvers}, {"pictures", eval_pictures},
+             {"lights", eval_lights}, {"several", eval_several}, {"unknown", eval_unknown},
+             {"detail", eval_detail}, {"doubts", eval_doubts},   {"masks", eval_masks},
+             {"photos", eval_photos}, {"table1", eval_table1},   {"table2", eval_table2}};
+
 int cmd_eval(int argc, char **argv)
 {
-    if (argc > 1 && strcmp(argv[1], "stereo") == 0) return eval_stereo(argc - 1, argv + 1);
-    if (argc > 1 && strcmp(argv[1], "solvers") == 0) return eval_solvers(argc - 1, argv + 1);
-    if (argc > 1 && strcmp(argv[1], "pictures") == 0) return eval_pictures(argc - 1, argv + 1);
-    if (argc > 1 && strcmp(argv[1], "lights") == 0) return eval_lights(argc - 1, argv + 1);
-    if (argc > 1 && strcmp(argv[1], "several") == 0) return eval_several(argc - 1, argv + 1);
-    if (argc > 1 && strcmp(argv[1], "unknown") == 0) return eval_unknown(argc - 1, argv + 1);
-    if (argc > 1 && strcmp(argv[1], "detail") == 0) return eval_detail(argc - 1, argv + 1);
-    if (argc > 1 && strcmp(argv[1], "doubts") == 0) return eval_doubts(argc - 1, argv + 1);
-    if (argc > 1 && strcmp(argv[1], "masks") == 0) return eval_masks(argc - 1, argv + 1);
-    if (argc > 1 && strcmp(argv[1], "photos") == 0) return eval_photos(argc - 1, argv + 1);
+    for (size_t i = 0; argc > 1 && i < sizeof verbs / sizeof *verbs; i++)
+        if (strcmp(argv[1], verbs[i].name) == 0) return verbs[i].run(argc - 1, argv + 1);
     request r = {.options = {.stopped = cli_interrupted}};
     if (parse(argc, argv, &r) != OK) return cli_usage("eval", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;

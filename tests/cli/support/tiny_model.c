@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* tiny_model FILE [several]: weights of a tiny network of both decoders, or of several photographs, as random as
- * training begins with. */
+/* tiny_model FILE [several|sang|NAME]: weights of a tiny network of both decoders, or of several photographs, as random
+ * as training begins with; or a rival's, which is not tiny; or of both decoders under another name. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,18 +11,22 @@
 int main(int argc, char **argv)
 {
     const bool several = argc == 3 && strcmp(argv[2], "several") == 0;
-    if (argc != 2 && !several) return 2;
-    const model_config config = {.name = "tiny",
-                                 .input_global = true,
-                                 .material_decoders = 1,
-                                 .feature_sharing = !several,
-                                 .gated_attention = true,
-                                 .relight = several ? MODEL_RELIGHT_BRDF : MODEL_RELIGHT_NETWORK,
-                                 .lighting = several ? MODEL_LIGHT_ANY : MODEL_LIGHT_POINT,
-                                 .several = several,
-                                 .global_illumination = true,
-                                 .widths = {8, 8, 8, 8, 8},
-                                 .gi_widths = {8, 8, 8, 8, 8}};
+    if (argc != 2 && argc != 3) return 2;
+    model_config config = {.name = "tiny",
+                           .input_global = true,
+                           .material_decoders = 1,
+                           .feature_sharing = !several,
+                           .gated_attention = true,
+                           .relight = several ? MODEL_RELIGHT_BRDF : MODEL_RELIGHT_NETWORK,
+                           .lighting = several ? MODEL_LIGHT_ANY : MODEL_LIGHT_POINT,
+                           .several = several,
+                           .global_illumination = true,
+                           .widths = {8, 8, 8, 8, 8},
+                           .gi_widths = {8, 8, 8, 8, 8}};
+    static const char sang[] = "{\"name\": \"sang\", \"rival\": \"sang\", \"cascades\": 1}";
+    if (argc == 3) snprintf(config.name, sizeof config.name, "%s", argv[2]);
+    if (argc == 3 && strcmp(argv[2], "sang") == 0 && model_config_parse(sang, strlen(sang), "sang", &config) != OK)
+        return 1;
     nn_graph *g = NULL;
     nn_params *params = NULL;
     char *json = model_config_write(&config);
