@@ -31,12 +31,13 @@ static status relight_all(network *n, const relighter *st, int (*stop)(void), me
     return s;
 }
 
-status relit_new(merlin_model *model, const merlin_maps *maps, int side, int (*stop)(void), relit *out)
+status relit_new(merlin_model *model, const merlin_maps *maps, int side, merlin_relighting how, int (*stop)(void),
+                 relit *out)
 {
     *out = (relit){0};
     relighter st;
-    network *n = model_network(model, maps, RELIT_BY);
-    status s = relighter_new(n, maps, side, RELIT_BY, &st);
+    network *n = model_network(model, maps, how);
+    status s = relighter_new(n, maps, side, how, &st);
     if (s != OK) return s;
     st.white = NEAR_CAPTURE_WHITE;
     s = relight_all(n, &st, stop, &out->capture);

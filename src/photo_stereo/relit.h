@@ -15,7 +15,7 @@
 
 enum { RELIT_LIGHTS = 50 };
 
-/* The way of relighting. */
+/* The usual way of relighting. */
 #define RELIT_BY MERLIN_BY_BRDF_UNSHADOWED
 
 typedef struct relit {
@@ -23,9 +23,10 @@ typedef struct relit {
     surface maps;           /* maps from which they were rendered, of the same size */
 } relit;
 
-/* Renders the maps' crop in side × side pixels under lights of the frontal hemisphere, drawn with a fixed seed, by the
- * BRDF with the network's bounces. stop (may be NULL) is called between pictures. */
-status relit_new(merlin_model *model, const merlin_maps *maps, int side, int (*stop)(void), relit *out);
+/* Renders the maps' crop in side × side pixels under lights of the frontal hemisphere, drawn with a fixed seed, in
+ * this way. stop (may be NULL) is called between pictures. */
+status relit_new(merlin_model *model, const merlin_maps *maps, int side, merlin_relighting how, int (*stop)(void),
+                 relit *out);
 void relit_free(relit *r);
 
 #endif

@@ -122,7 +122,7 @@ static status make(merlin_model *model, const merlin_maps *maps, work *w, merlin
 {
     const double began = clock_seconds();
     const int side = maps->crop.side < LARGEST_SIDE ? maps->crop.side : LARGEST_SIDE;
-    status s = relit_new(model, maps, side, w->params->stop, &w->relit);
+    status s = relit_new(model, maps, side, RELIT_BY, w->params->stop, &w->relit);
     const double rendered = clock_seconds();
     if (s == OK) s = surface_new_from(w, out);
     if (s == OK) s = solve_all(w);

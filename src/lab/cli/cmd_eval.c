@@ -28,7 +28,7 @@ static const char help[] =
     "       merlin-lab eval several --data DIR [options]\n"
     "       merlin-lab eval unknown [--data DIR] [options]\n"
     "       merlin-lab eval pictures FOLDER... [options]\n"
-    "       merlin-lab eval table1|table2 --data DIR WEIGHTS... [options]\n"
+    "       merlin-lab eval table1|table2|table3 --data DIR WEIGHTS... [options]\n"
     "       merlin-lab eval photos PHOTO|FOLDER... --model W [--model W2] -o FILE.png\n\n"
     "Measures what merlin estimate and merlin relight make by a model of samples it was not trained on (a folder made "
     "by\n"
@@ -192,10 +192,10 @@ static int run_evaluation(request *r)
 static const struct {
     const char *name;
     int (*run)(int argc, char **argv);
-} verbs[] = {{"stereo", eval_stereo}, {"solvers", eval_solvers}, {"pictures", eval_pictures},
-             {"lights", eval_lights}, {"several", eval_several}, {"unknown", eval_unknown},
-             {"detail", eval_detail}, {"doubts", eval_doubts},   {"masks", eval_masks},
-             {"photos", eval_photos}, {"table1", eval_table1},   {"table2", eval_table2}};
+} verbs[] = {{"stereo", eval_stereo},   {"solvers", eval_solvers}, {"pictures", eval_pictures}, {"lights", eval_lights},
+             {"several", eval_several}, {"unknown", eval_unknown}, {"detail", eval_detail},     {"doubts", eval_doubts},
+             {"masks", eval_masks},     {"photos", eval_photos},   {"table1", eval_table1},     {"table2", eval_table2},
+             {"table3", eval_table3}};
 
 int cmd_eval(int argc, char **argv)
 {

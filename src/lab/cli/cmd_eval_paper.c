@@ -1,14 +1,17 @@
 /* SPDX-License-Identifier: MIT */
-/* merlin-lab eval table1 and table2: the paper's tables by weights of this project's. */
+/* merlin-lab eval table1, table2 and table3: the paper's tables by weights of this project's. */
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "command/cli.h"
 #include "command/json_line.h"
 #include "command/options.h"
+#include "command/photos.h"
 #include "lab/cli/eval_commands.h"
 #include "lab/eval/paper/paper_table.h"
+#include "lab/eval/paper/paper_table3.h"
 
 static const char help[] =
     "usage: merlin-lab eval table1 --data DIR WEIGHTS... [options]\n"
@@ -73,4 +76,72 @@ int eval_table1(int argc, char **argv)
 int eval_table2(int argc, char **argv)
 {
     return run(argc, argv, PAPER_TABLE2, "eval table2");
+}
+
+static const char help3[] =
+    "usage: merlin-lab eval table3 --data DIR WEIGHTS... [options]\n\n"
+    "The paper's table of photometric stereo from relit pictures, as merlin-lab eval stereo has it, with rows for\n"
+    "pictures that each of several weights relit: by the maps' BRDF, and by its network where it is Sang's.\n\n"
+    "  --data DIR         samples with many targets, or captures (merlin-lab eval stereo --help)\n"
+    "  --method universal a judge more: a network that sees the pictures of a draw together, lights unknown\n"
+    "  --count N          only the first N objects\n"
+    "      --json         report on standard output as JSON\n"
+    "  -t, --threads N    how many threads work (default: one a processor)\n"
+    "  -q, --quiet        no progress\n"
+    "  -h, --help         this text\n";
+
+typedef struct request3 {
+    paper3_options options;
+    const char *method;
+    bool json, help;
+} request3;
+
+static status parse3(int argc, char **argv, request3 *r)
+{
+    const cli_option options[] = {
+        {"data", .text = &r->options.stereo.data},
+        {"method", .text = &r->method},
+        {"count", .count = &r->options.stereo.count, .low = 1, .high = 1000000},
+        {"json", .flag = &r->json},
+        {"quiet", 'q', .flag = &r->options.stereo.quiet},
+        {"help", 'h', .flag = &r->help},
+        {0},
+    };
+    status s = cli_read_options(&argc, &argv, options);
+    if (s != OK || r->help) return s;
+    r->options.weights = (const char *const *)argv;
+    r->options.count = argc;
+    if (!r->options.stereo.data) return fail(MERLIN_WRONG_USE, "--data DIR is missing");
+    if (r->method && strcmp(r->method, "universal") != 0)
+        return fail(MERLIN_WRONG_USE, "--method adds \"universal\", not \"%s\"", r->method);
+    return argc > 0 ? OK : fail(MERLIN_WRONG_USE, "name weights to relight with");
+}
+
+static status announce3(const request3 *r, const paper3_table *t)
+{
+    if (r->json) return json_report_print(paper3_table_json(t));
+    paper3_table_print(t, stdout);
+    return OK;
+}
+
+int eval_table3(int argc, char **argv)
+{
+    request3 r = {.options.stereo.stopped = cli_interrupted};
+    if (parse3(argc, argv, &r) != OK) return cli_usage("eval table3", "%s", status_message());
+    if (r.help) return fputs(help3, stdout) < 0;
+    cli_catch_interrupts();
+    char *judge = NULL, *flash = NULL, *several = NULL;
+    paper3_table table;
+    status s = r.method ? photo_find_models("merlin-any", &judge, &flash) : OK;
+    if (s == OK && r.method) s = photo_find_several(NULL, &several);
+    r.options.stereo.judge = judge;
+    r.options.stereo.several = several;
+    if (s == OK) s = paper3_table_run(&r.options, &table);
+    free(judge);
+    free(flash);
+    free(several);
+    if (s != OK) return cli_fail("eval table3", s);
+    s = announce3(&r, &table);
+    paper3_table_free(&table);
+    return s == OK ? 0 : cli_fail("eval table3", s);
 }

@@ -29,8 +29,9 @@ int eval_lights(int argc, char **argv);
 int eval_several(int argc, char **argv);
 /* Runs merlin-lab eval unknown; argv[0] is "unknown". Returns the exit status. */
 int eval_unknown(int argc, char **argv);
-/* Run merlin-lab eval table1 and table2; argv[0] is the verb. Return the exit status. */
+/* Run merlin-lab eval table1, table2 and table3; argv[0] is the verb. Return the exit status. */
 int eval_table1(int argc, char **argv);
 int eval_table2(int argc, char **argv);
+int eval_table3(int argc, char **argv);
 
 #endif

@@ -13,7 +13,7 @@
 enum { LABEL_WIDTH = 20, CELL_WIDTH = 9 };
 
 /* Prints headings such as "3" above "superqua" for "3 superquadric": two lines of cells of one width. */
-static void print_heading(const stereo_table *t, FILE *stream)
+void stereo_table_print_heading(const stereo_table *t, FILE *stream)
 {
     for (int line = 0; line < 2; line++) {
         fprintf(stream, "%-*s", LABEL_WIDTH, "");
@@ -36,7 +36,7 @@ static void print_number(double value, FILE *stream)
         fprintf(stream, "%*.2f", CELL_WIDTH, value);
 }
 
-static void print_row(const stereo_table *t, stereo_row row, const char *label, FILE *stream)
+void stereo_table_print_row(const stereo_table *t, stereo_row row, const char *label, FILE *stream)
 {
     int failed = 0;
     fprintf(stream, "%-*s", LABEL_WIDTH, label);
@@ -80,19 +80,19 @@ void stereo_table_print(const stereo_table *t, FILE *stream)
 {
     fprintf(stream, "%s, mean angular error in degrees over %zu objects; %d pictures drawn %d times\n\n", t->model,
             t->count, SUBSET_PICTURES, SUBSETS);
-    print_heading(t, stream);
-    print_row(t, STEREO_SINGLE, "single image", stream);
+    stereo_table_print_heading(t, stream);
+    stereo_table_print_row(t, STEREO_SINGLE, "single image", stream);
     fputs("calibrated\n", stream);
-    print_row(t, STEREO_RELIT, "  relit images", stream);
-    print_row(t, STEREO_REAL, "  real images", stream);
+    stereo_table_print_row(t, STEREO_RELIT, "  relit images", stream);
+    stereo_table_print_row(t, STEREO_REAL, "  real images", stream);
     fputs("uncalibrated\n", stream);
-    print_row(t, STEREO_RELIT_UNCALIBRATED, "  relit images", stream);
-    print_row(t, STEREO_REAL_UNCALIBRATED, "  real images", stream);
+    stereo_table_print_row(t, STEREO_RELIT_UNCALIBRATED, "  relit images", stream);
+    stereo_table_print_row(t, STEREO_REAL_UNCALIBRATED, "  real images", stream);
     const bool universal = !isnan(stereo_table_mean(t, STEREO_RELIT_UNIVERSAL));
     if (universal) {
         fputs("universal\n", stream);
-        print_row(t, STEREO_RELIT_UNIVERSAL, "  relit images", stream);
-        print_row(t, STEREO_REAL_UNIVERSAL, "  real images", stream);
+        stereo_table_print_row(t, STEREO_RELIT_UNIVERSAL, "  relit images", stream);
+        stereo_table_print_row(t, STEREO_REAL_UNIVERSAL, "  real images", stream);
     }
     fputc('\n', stream);
     print_comparison(t, STEREO_RELIT, "relit images", stream);
@@ -123,7 +123,7 @@ static cJSON *object_json(const stereo_column *column)
     json_put_number(o, "pixels", (double)column->pixels);
     json_put_number(o, "real_pictures", column->pictures);
     for (int row = 0; row < STEREO_ROWS; row++) {
-        if (row >= STEREO_RELIT_UNIVERSAL && isnan(column->row[row].error)) continue;
+        if (isnan(column->row[row].error) && !column->row[row].failed) continue; /* not asked for */
         cJSON *r = json_put_object(o, keys[row]);
         add_number(r, "error_degrees", column->row[row].error);
         if (row == STEREO_SINGLE) continue;
@@ -133,9 +133,8 @@ static cJSON *object_json(const stereo_column *column)
     return o;
 }
 
-char *stereo_table_json(const stereo_table *t)
+void stereo_table_put(const stereo_table *t, cJSON *o)
 {
-    cJSON *o = report_begin(&(warnings){0});
     json_put_text(o, "model", t->model);
     json_put_number(o, "draws", SUBSETS);
     json_put_number(o, "pictures_a_draw", SUBSET_PICTURES);
@@ -146,6 +145,12 @@ char *stereo_table_json(const stereo_table *t)
     for (size_t i = 0; i < t->count; i++)
         json_append(list, object_json(&t->object[i]));
     json_put_number(o, "seconds", t->seconds);
+}
+
+char *stereo_table_json(const stereo_table *t)
+{
+    cJSON *o = report_begin(&(warnings){0});
+    stereo_table_put(t, o);
     char *text = json_print(o);
     cJSON_Delete(o);
     return text;

@@ -3,6 +3,8 @@
 #ifndef MERLIN_LAB_EVAL_STEREO_STEREO_ROW_H
 #define MERLIN_LAB_EVAL_STEREO_STEREO_ROW_H
 
+#include <stdbool.h>
+
 typedef enum stereo_row {
     STEREO_SINGLE, /* the network's own normals */
     STEREO_RELIT,  /* photometric stereo from relit pictures, lights known */
@@ -14,5 +16,11 @@ typedef enum stereo_row {
     STEREO_REAL_UNIVERSAL,
     STEREO_ROWS
 } stereo_row;
+
+/* Tells whether a row is of real pictures. */
+static inline bool stereo_row_is_real(stereo_row row)
+{
+    return row == STEREO_REAL || row == STEREO_REAL_UNCALIBRATED || row == STEREO_REAL_UNIVERSAL;
+}
 
 #endif

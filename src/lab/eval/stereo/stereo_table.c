@@ -19,7 +19,8 @@
 typedef struct evaluation {
     const stereo_options *options;
     merlin_model *model, *judge; /* judge: of the universal rows, or NULL */
-    sheet_rows *sheet;           /* or NULL */
+    merlin_relighting how;
+    sheet_rows *sheet; /* or NULL */
     progress bar;
     size_t solved;
 } evaluation;
@@ -47,7 +48,7 @@ static status estimate(evaluation *e, subject *s)
     merlin_maps maps = {0};
     status result = merlin_estimate(e->model, &s->object.photo, &s->object.capture.mask, NULL, &maps);
     if (result == OK) result = stereo_frame_check(&s->object.capture, &maps);
-    if (result == OK) result = relit_new(e->model, &maps, maps.crop.side, e->options->stopped, &s->relit);
+    if (result == OK) result = relit_new(e->model, &maps, maps.crop.side, e->how, e->options->stopped, &s->relit);
     merlin_maps_free(&maps);
     if (result == OK) result = img_copy(&s->shown[STEREO_SINGLE], &s->relit.maps.normal);
     if (result != OK) return fail_in(result, "%s", s->object.name);
@@ -133,13 +134,12 @@ static status evaluate_subject(evaluation *e, subject *s, const char *path)
     s->column->pictures = s->object.capture.count;
     result = estimate(e, s);
     const merlin_capture *made = &s->relit.capture, *taken = &s->object.capture;
-    if (result == OK) result = solve_subsets(e, s, STEREO_RELIT, made);
-    if (result == OK) result = solve_subsets(e, s, STEREO_REAL, taken);
-    if (result == OK) result = solve_subsets(e, s, STEREO_RELIT_UNCALIBRATED, made);
-    if (result == OK) result = solve_subsets(e, s, STEREO_REAL_UNCALIBRATED, taken);
-    s->column->row[STEREO_RELIT_UNIVERSAL].error = s->column->row[STEREO_REAL_UNIVERSAL].error = (double)NAN;
-    if (result == OK && e->judge) result = solve_subsets(e, s, STEREO_RELIT_UNIVERSAL, made);
-    if (result == OK && e->judge) result = solve_subsets(e, s, STEREO_REAL_UNIVERSAL, taken);
+    for (int row = STEREO_RELIT; row < STEREO_ROWS; row++) {
+        const bool is_real = stereo_row_is_real((stereo_row)row), universal = row >= STEREO_RELIT_UNIVERSAL;
+        s->column->row[row].error = (double)NAN;
+        if (result != OK || (is_real && e->options->relit_only) || (universal && !e->judge)) continue;
+        result = solve_subsets(e, s, (stereo_row)row, is_real ? taken : made);
+    }
     if (result == OK && e->sheet) result = stereo_sheet_add(e->sheet, &s->object, s->shown);
     return result;
 }
@@ -147,7 +147,7 @@ static status evaluate_subject(evaluation *e, subject *s, const char *path)
 static status evaluate_all(evaluation *e, char **path, stereo_table *out)
 {
     status s = OK;
-    const size_t solutions = (size_t)(e->judge ? 6 : 4) * SUBSETS;
+    const size_t solutions = (size_t)((e->judge ? 6 : 4) / (e->options->relit_only ? 2 : 1)) * SUBSETS;
     progress_begin(&e->bar, "photometric stereo", "solutions", 0, out->count * solutions, e->options->quiet);
     for (size_t i = 0; i < out->count && s == OK; i++) {
         subject one = {.column = &out->object[i]};
@@ -161,11 +161,12 @@ static status evaluate_all(evaluation *e, char **path, stereo_table *out)
 
 static status run_listed(const stereo_options *options, char **path, stereo_table *out)
 {
-    evaluation e = {.options = options};
+    evaluation e = {.options = options, .how = RELIT_BY};
     out->object = calloc(out->count, sizeof *out->object);
     if (!out->object) return fail(MERLIN_NO_MEMORY, "no memory for a table of %zu objects", out->count);
     status s = model_open_pair(options->weights, options->flash, &e.model);
     if (s == OK) snprintf(out->model, sizeof out->model, "%s", merlin_model_name(e.model));
+    if (s == OK && network_config(e.model->network)->rival == MODEL_SANG) e.how = MERLIN_BY_NETWORK;
     if (s == OK && options->judge) s = model_open_several(options->judge, options->several, &e.judge);
     if (s == OK && options->figure) s = stereo_sheet_new(out->count, &e.sheet);
     if (s == OK) s = evaluate_all(&e, path, out);
@@ -199,13 +200,26 @@ void stereo_table_free(stereo_table *t)
     *t = (stereo_table){0};
 }
 
-double stereo_table_mean(const stereo_table *t, stereo_row row)
+/* Computes the means over the objects that were solved. */
+static stereo_score mean_of(const stereo_table *t, stereo_row row)
 {
-    double sum = 0, count = 0;
+    stereo_score sum = {0};
+    double count = 0;
     for (size_t i = 0; i < t->count; i++) {
         if (isnan(t->object[i].row[row].error)) continue;
-        sum += t->object[i].row[row].error;
+        sum.error += t->object[i].row[row].error;
+        sum.spread += t->object[i].row[row].spread;
         count++;
     }
-    return count > 0 ? sum / count : NAN;
+    return count > 0 ? (stereo_score){sum.error / count, sum.spread / count, 0} : (stereo_score){NAN, NAN, 0};
+}
+
+double stereo_table_mean(const stereo_table *t, stereo_row row)
+{
+    return mean_of(t, row).error;
+}
+
+double stereo_table_spread(const stereo_table *t, stereo_row row)
+{
+    return mean_of(t, row).spread;
 }

@@ -20,6 +20,8 @@
 #include "base/status.h"
 #include "lab/eval/stereo/stereo_row.h"
 
+struct cJSON;
+
 typedef struct stereo_score {
     double
         error; /* mean angle to the true normals over the object, degrees; the mean of the subsets that were solved */
@@ -45,6 +47,7 @@ typedef struct stereo_options {
     const char *data, *weights, *flash; /* flash: weights for what is seen as a flash alone, or NULL */
     const char *judge, *several; /* weights of the universal rows: merlin_model_open's and _add_several's (may be NULL);
                                   * judge NULL: without these rows */
+    bool relit_only;             /* without the rows of real pictures, which are the same for all weights */
     size_t count;                /* the first so many objects; 0: all */
     const char *figure;          /* PNG of normals and where they are off, a line an object; NULL: none */
     bool quiet;
@@ -57,6 +60,15 @@ void stereo_table_free(stereo_table *t);
 
 /* Returns the mean over the objects that were solved; NAN if there are none. */
 double stereo_table_mean(const stereo_table *t, stereo_row row);
+
+/* Returns the mean over the objects of the draws' standard deviation; NAN if there are none. */
+double stereo_table_spread(const stereo_table *t, stereo_row row);
+
+/* Print the names of the objects, and the figures of a row with their mean. */
+void stereo_table_print_heading(const stereo_table *t, FILE *stream);
+void stereo_table_print_row(const stereo_table *t, stereo_row row, const char *label, FILE *stream);
+/* Puts the table's figures into a JSON object. */
+void stereo_table_put(const stereo_table *t, struct cJSON *o);
 
 /* Prints the table in the layout of the paper's, and one line each about the gain of relit pictures over the single
  * one. */
