@@ -138,7 +138,7 @@ def li(r, inputs):
     heads = [r.head(r.decoder("material_" + k, skips[-1], skips)[0], f"material_{k}.head", 3) for k in names]
     out = direct_of(maps_of(torch.cat(heads, 1)), inputs)
 
-    half = r.down(seen_by_cascade(inputs, out, inputs["image"] - out["direct"]), "cascade1.level0", 64, 6)
+    half = r.down(seen_by_cascade(inputs, out, inputs["image"] ** 2 - out["direct"]), "cascade1.level0", 64, 6)
     x = r.residual(r.down(half, "cascade1.level1", 128, 6), "cascade1", 3)
     heads = []
     for name in ("cascade1." + k for k in names):

@@ -16,15 +16,26 @@ static nn_node *light_code(model_network *n)
     return nn_tanh(g, nn_linear(g, code, "lighting.fc3", RIVAL_REFINED));
 }
 
+/* Adds the linear image: model_encode_image's is its square root. */
+static nn_node *linear_image(nn_graph *g, nn_node *image)
+{
+    nn_node *square[3];
+    for (int c = 0; c < 3; c++) {
+        nn_node *one = nn_slice(g, image, c, 1);
+        square[c] = nn_gate(g, one, one);
+    }
+    return nn_concat(g, square, 3);
+}
+
 /* Returns what a cascade sees: the image, the mask, the maps before, their rendering under the flash and, for Sang, the
  * relit image, for Li what the rendering lacks of the image. */
 static nn_node *seen_of(const model_network *n, nn_node *image)
 {
     nn_graph *g = n->g;
     const model_maps *m = &n->maps;
-    nn_node *lacking = nn_add(g, image, nn_scale_shift(g, n->direct, -1.0f, 0.0f));
-    nn_node *parts[8] = {image,        n->mask,  m->albedo, m->normal,
-                         m->roughness, m->depth, n->direct, n->relit_direct ? n->relit_direct : lacking};
+    nn_node *last = n->relit_direct;
+    if (!last) last = nn_add(g, linear_image(g, image), nn_scale_shift(g, n->direct, -1.0f, 0.0f));
+    nn_node *parts[8] = {image, n->mask, m->albedo, m->normal, m->roughness, m->depth, n->direct, last};
     return nn_stop(g, nn_gate(g, nn_concat(g, parts, 8), n->mask));
 }
 

@@ -12,7 +12,7 @@
 
 #include "model/model_network.h"
 
-enum { RIVAL_SCALES = 6, RIVAL_WIDTH = 64, RIVAL_SEEN = 18, RIVAL_REFINED = 128 };
+enum { RIVAL_SCALES = 6, RIVAL_WIDTH = 64, RIVAL_REFINED = 128 };
 
 /* Builds the network of n->config->rival into n. */
 void rival_build(model_network *n, model_part part);
