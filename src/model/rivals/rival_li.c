@@ -5,23 +5,9 @@
 #include "model/rivals/rival.h"
 #include "model/rivals/rival_parts.h"
 
-enum { MAPS = 4, COARSE_BLOCKS = 3, BOUNCE_SCALES = 5, DILATED_SCALE = 3 };
+enum { MAPS = 4, BOUNCE_SCALES = 5, DILATED_SCALE = 3 };
 
 static const char *const map_names[MAPS] = {"albedo", "normal", "roughness", "depth"};
-
-static nn_node *mean_of_three(nn_graph *g, nn_node *x)
-{
-    nn_node *sum = nn_add(g, nn_slice(g, x, 0, 1), nn_slice(g, x, 1, 1));
-    return nn_scale_shift(g, nn_add(g, sum, nn_slice(g, x, 2, 1)), 1 / 3.0f, 0.0f);
-}
-
-static void take_maps(model_network *n, nn_node *const y[MAPS])
-{
-    n->maps.albedo = y[0];
-    n->maps.normal = nn_normalize(n->g, y[1]);
-    n->maps.roughness = mean_of_three(n->g, y[2]);
-    n->maps.depth = model_shape_depth(n->g, mean_of_three(n->g, y[3]));
-}
 
 static void first_stage(model_network *n, nn_node *seen)
 {
@@ -33,24 +19,18 @@ static void first_stage(model_network *n, nn_node *seen)
         const rival_decoder_inputs in = {name, skips[RIVAL_SCALES - 1], skips, NULL};
         y[k] = rival_head(n->g, rival_decoder(n->g, &in, NULL), rival_join(head, name, "head"), 3);
     }
-    take_maps(n, y);
+    rival_take_maps(n, y);
 }
 
 static void cascade(model_network *n, const char *stage, nn_node *seen)
 {
-    nn_graph *g = n->g;
-    char name[RIVAL_NAME], part[RIVAL_NAME];
-    nn_node *y[MAPS], *half = rival_down(g, nn_compute(g, seen), rival_join(name, stage, "level0"), RIVAL_WIDTH, 6);
-    nn_node *x = rival_down(g, half, rival_join(name, stage, "level1"), RIVAL_REFINED, 6);
-    x = rival_residual(g, x, stage, COARSE_BLOCKS, RIVAL_REFINED, 1);
+    nn_node *y[MAPS], *half, *x = rival_refining_encoder(n->g, seen, stage, &half);
     for (int k = 0; k < MAPS; k++) {
+        char name[RIVAL_NAME];
         rival_join(name, stage, map_names[k]);
-        y[k] = rival_residual(g, x, name, COARSE_BLOCKS, RIVAL_REFINED, 1);
-        nn_node *both[2] = {rival_up(g, y[k], rival_join(part, name, "level1"), RIVAL_WIDTH), half};
-        y[k] = rival_up(g, nn_concat(g, both, 2), rival_join(part, name, "level0"), RIVAL_WIDTH);
-        y[k] = rival_head(g, y[k], rival_join(part, name, "head"), 3);
+        y[k] = rival_refine(n->g, &(rival_refining){name, x, {half, NULL}, 3}, NULL);
     }
-    take_maps(n, y);
+    rival_take_maps(n, y);
 }
 
 void rival_li_stage(model_network *n, int stage, nn_node *seen)

@@ -5,6 +5,8 @@
 
 #include "model/rivals/rival.h"
 
+enum { COARSE_BLOCKS = 3 };
+
 static const int encoder_widths[RIVAL_SCALES] = {32, 64, 128, 256, 256, 512};
 static const int decoder_widths[RIVAL_SCALES] = {RIVAL_WIDTH, 32, 64, 128, 256, 256}; /* at full size, 1/2, … */
 
@@ -79,4 +81,38 @@ nn_node *rival_decoder(nn_graph *g, const rival_decoder_inputs *in, nn_node **ow
         y = nn_concat(g, parts, in->shared ? 3 : 2);
     }
     return y;
+}
+
+nn_node *rival_refining_encoder(nn_graph *g, nn_node *seen, const char *name, nn_node **half)
+{
+    char level[RIVAL_NAME];
+    *half = rival_down(g, nn_compute(g, seen), rival_join(level, name, "level0"), RIVAL_WIDTH, 6);
+    nn_node *x = rival_down(g, *half, rival_join(level, name, "level1"), RIVAL_REFINED, 6);
+    return rival_residual(g, x, name, COARSE_BLOCKS, RIVAL_REFINED, 1);
+}
+
+nn_node *rival_refine(nn_graph *g, const rival_refining *in, nn_node **half)
+{
+    char part[RIVAL_NAME];
+    nn_node *y = rival_residual(g, in->from, in->name, COARSE_BLOCKS, RIVAL_REFINED, 1);
+    nn_node *parts[3] = {rival_up(g, y, rival_join(part, in->name, "level1"), RIVAL_WIDTH), in->beside[0],
+                         in->beside[1]};
+    if (half) *half = parts[0];
+    y = nn_concat(g, parts, in->beside[1] ? 3 : 2);
+    y = rival_up(g, y, rival_join(part, in->name, "level0"), RIVAL_WIDTH);
+    return rival_head(g, y, rival_join(part, in->name, "head"), in->channels);
+}
+
+static nn_node *mean_of_three(nn_graph *g, nn_node *x)
+{
+    nn_node *sum = nn_add(g, nn_slice(g, x, 0, 1), nn_slice(g, x, 1, 1));
+    return nn_scale_shift(g, nn_add(g, sum, nn_slice(g, x, 2, 1)), 1 / 3.0f, 0.0f);
+}
+
+void rival_take_maps(model_network *n, nn_node *const y[4])
+{
+    n->maps.albedo = y[0];
+    n->maps.normal = nn_normalize(n->g, y[1]);
+    n->maps.roughness = mean_of_three(n->g, y[2]);
+    n->maps.depth = model_shape_depth(n->g, mean_of_three(n->g, y[3]));
 }

@@ -3,7 +3,7 @@
 #ifndef MERLIN_MODEL_RIVALS_RIVAL_PARTS_H
 #define MERLIN_MODEL_RIVALS_RIVAL_PARTS_H
 
-#include "nn/nn.h"
+#include "model/model_network.h"
 
 /* Adds a convolution of stride 2. */
 nn_node *rival_down(nn_graph *g, nn_node *x, const char *name, int out, int kernel);
@@ -30,6 +30,24 @@ nn_node *rival_decoder(nn_graph *g, const rival_decoder_inputs *in, nn_node **ow
 
 /* Adds an encoder of six scales from 1/2 on, of an image of any channels. */
 void rival_encoder(nn_graph *g, nn_node *x, const char *name, nn_node **features);
+
+/* Adds a cascade's encoder, which ends at 1/4 of the size with RIVAL_REFINED channels; half receives its features at
+ * 1/2. */
+nn_node *rival_refining_encoder(nn_graph *g, nn_node *seen, const char *name, nn_node **half);
+
+/* A cascade's decoder from there on. */
+typedef struct rival_refining {
+    const char *name;
+    nn_node *from;
+    nn_node *beside[2]; /* features at 1/2 that are added as channels; NULL: none */
+    int channels;       /* of the head */
+} rival_refining;
+
+/* Adds it up to its head; half (may be NULL) receives its own features at 1/2. */
+nn_node *rival_refine(nn_graph *g, const rival_refining *in, nn_node **half);
+
+/* Takes the maps from three channels each of albedo, normal, roughness and depth, the latter two being means. */
+void rival_take_maps(model_network *n, nn_node *const y[4]);
 
 /* Writes "a.b" into a buffer of RIVAL_NAME characters. */
 enum { RIVAL_NAME = 96 };
