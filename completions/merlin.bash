@@ -19,7 +19,7 @@ _merlin() {
         ((COMP_CWORD == 2)) && mapfile -t COMPREPLY < <(compgen -W "$commands" -- "$current") && return
         words=("${COMP_WORDS[2]}")
     fi
-    verbs=$("$merlin" "${words[0]}" --help 2>/dev/null | sed -n "s/^  *$name ${words[0]} \([a-z][a-z]*\) .*/\1/p")
+    verbs=$("$merlin" "${words[0]}" --help 2>/dev/null | sed -n "s/^  *$name ${words[0]} \([a-z][a-z0-9]*\) .*/\1/p")
     if [[ ${COMP_WORDS[1]} == help ]]; then
         ((COMP_CWORD > 3)) || mapfile -t COMPREPLY < <(compgen -W "$verbs" -- "$current")
         return

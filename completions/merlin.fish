@@ -15,7 +15,7 @@ end
 
 function __merlin_verbs
     set -l name (string replace --regex '.*/' '' -- (__merlin_program))
-    (__merlin_program) $argv[1] --help 2>/dev/null | string replace --filter --regex "^ +$name $argv[1] ([a-z]+) .*" '$1'
+    (__merlin_program) $argv[1] --help 2>/dev/null | string replace --filter --regex "^ +$name $argv[1] ([a-z][a-z0-9]*) .*" '$1'
 end
 
 # Each of a help's options, and what it says behind them.

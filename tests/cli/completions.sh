@@ -12,7 +12,7 @@ cd "$scratch" || exit 1
 # PROGRAM COMMAND
 commands=("merlin estimate" "merlin relight" "merlin view" "merlin export" "merlin stereo" "merlin stereo calibrate" "merlin serve" "merlin info")
 [[ -z ${MERLIN_LAB:-} ]] || for command in render train eval "eval stereo" "eval solvers" "eval detail" "eval doubts" \
-    "eval masks" "eval lights" "eval several" "eval pictures" "eval photos" export bench; do commands+=("merlin-lab $command"); done
+    "eval masks" "eval lights" "eval several" "eval pictures" "eval photos" average export bench; do commands+=("merlin-lab $command"); done
 
 manual() { sed 's/\\-/-/g; s/\\f.//g' "$MERLIN_SOURCE_DIR/man/$1.1"; } # PROGRAM
 in_source() { # PROGRAM COMMAND: the names in its table, and those of the table that all have
@@ -66,6 +66,7 @@ done
 for shell in "${shells[@]}"; do
     completes "$shell" relight merlin rel
     [[ -z ${MERLIN_LAB:-} ]] || completes "$shell" photos merlin-lab eval ph
+    [[ -z ${MERLIN_LAB:-} ]] || completes "$shell" table2 merlin-lab eval ta
     completes "$shell" calibrate merlin stereo c
     completes "$shell" merlin-env merlin relight photo.png --model merlin-e
     completes "$shell" network merlin relight photo.png --by n

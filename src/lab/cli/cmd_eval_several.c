@@ -69,13 +69,16 @@ int eval_several(int argc, char **argv)
     if (parse(argc, argv, &r) != OK) return cli_usage("eval several", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
     cli_catch_interrupts();
-    char *weights = NULL, *flash = NULL;
+    char *weights = NULL, *flash = NULL, *several = NULL;
     several_table table;
     status s = photo_find_models(r.options.weights ? r.options.weights : "merlin-any", &weights, &flash);
+    if (s == OK && r.options.several) s = photo_find_several(r.options.several, &several);
     r.options.weights = weights;
+    r.options.several = several;
     if (s == OK) s = several_table_run(&r.options, &table);
     free(weights);
     free(flash);
+    free(several);
     if (s == OK) s = announce(&r, &table);
     return s == OK ? 0 : cli_fail("eval several", s);
 }

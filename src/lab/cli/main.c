@@ -7,6 +7,7 @@ static const cli_command commands[] = {
     {"render", "make training data", cmd_render},
     {"train", "train a model", cmd_train},
     {"eval", "measure a model on held-out data, beside trivial answers", cmd_eval},
+    {"average", "the mean of two weights files", cmd_average},
     {"export", "write a model's networks for other runtimes", cmd_export},
     {"bench", "measure what the model and the renderer cost on this machine", cmd_bench},
 };

@@ -15,6 +15,7 @@ grep -q '"photographs":{"1":{"samples":1,"normal_angle_degrees":.*"2":' "$scratc
 ! grep -q '"4":' "$scratch/report.json" || complain "there are four photographs of three lamps"
 
 succeeds '^2  *1 ' several --data "$scratch/lit" --model "$weights" --views 1 --size 64
+refuses 1 "nor are weights of that name" several --data "$scratch/lit" --model "$weights" --several merlin-none
 refuses 2 "--size wants a multiple of 32, not 100" several --data "$scratch/lit" --model "$weights" --size 100
 refuses 2 "--data DIR is missing" several --model "$weights"
 "$TINY_MODEL" "$scratch/flash.safetensors"

@@ -76,6 +76,7 @@ static const struct run {
     {"table2/li", 0x521d819001ffb9c9},
     {"table2/sang", 0x6ba2dd45938ca129},
     {"merlin-any/07-128", 0xf269b25598af5e61},
+    {"merlin-any/08-256", 0x931749a8ca7c454c},
 };
 enum { RUNS = sizeof runs / sizeof *runs };
 
