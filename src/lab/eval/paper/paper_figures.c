@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* The paper's own figures, of the data of Li et al. 2018. */
+#include "lab/eval/paper/paper_figures.h"
+
 #include <math.h>
 #include <string.h>
-
-#include "lab/eval/paper/paper_table.h"
 
 typedef struct published {
     const char *model, *label; /* model NULL: any other */

@@ -13,6 +13,7 @@
 static status count_cost(const char *weights, paper_row *row)
 {
     enum { SMALL = 64, USUAL = 256 };
+    const double ratio = (double)USUAL / SMALL;
     model_config config;
     nn_graph *g = NULL;
     nn_params *params = NULL;
@@ -24,7 +25,7 @@ static status count_cost(const char *weights, paper_row *row)
     if (s == OK) {
         const nn_cost cost = nn_program_cost(p);
         row->parameters = (double)cost.parameter_count;
-        row->multiply_adds = cost.forward_flops / 2 * (USUAL / SMALL) * (USUAL / SMALL);
+        row->multiply_adds = cost.forward_flops / 2 * ratio * ratio;
     }
     nn_program_free(p);
     nn_params_free(params);
@@ -95,7 +96,8 @@ status paper_table_run(const paper_options *o, paper_table *out)
 {
     const double began = clock_seconds();
     *out = (paper_table){.which = o->which, .row = calloc((size_t)o->count + 1, sizeof *out->row)};
-    status s = out->row ? OK : fail(MERLIN_NO_MEMORY, "no memory for a table");
+    if (!out->row) return fail(MERLIN_NO_MEMORY, "no memory for a table");
+    status s = OK;
     for (int i = 0; s == OK && i < o->count; i++)
         s = measure(o, o->weights[i], out);
     for (int i = 0; i < out->rows; i++)

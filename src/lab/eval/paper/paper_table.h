@@ -16,12 +16,7 @@
 #include <stdio.h>
 
 #include "base/status.h"
-
-typedef enum paper_which { PAPER_TABLE1, PAPER_TABLE2 } paper_which;
-
-/* The columns of both tables; errors mean squared, similarities SSIM. Relighting: against the true maps rendered under
- * the target light. */
-enum { PAPER_ALBEDO, PAPER_ROUGHNESS, PAPER_NORMAL, PAPER_DEPTH, PAPER_NETWORK, PAPER_BRDF, PAPER_COLUMNS };
+#include "lab/eval/paper/paper_figures.h"
 
 /* What several runs of one model, which differ in their seeds, give. */
 typedef struct paper_row {
@@ -57,9 +52,5 @@ void paper_table_free(paper_table *t);
 void paper_table_print(const paper_table *t, FILE *stream);
 /* Returns malloc'ed JSON; NULL if memory ran out. */
 char *paper_table_json(const paper_table *t);
-
-/* Returns the paper's figures of the row of a model, in its own units (errors times 100; NAN: none), or NULL. label
- * (may be NULL) receives what the table calls it. */
-const double *paper_figures_of(paper_which which, const char *model, const char **label);
 
 #endif
