@@ -48,7 +48,7 @@ nn_node *model_shape_depth(nn_graph *g, nn_node *x)
     return nn_reciprocal(g, x, 1.2f, 1.45f);
 }
 
-static void decode_material(model_network *n, const char *name, nn_node *features[MODEL_LEVELS - 1])
+static void decode_material(model_nodes *n, const char *name, nn_node *features[MODEL_LEVELS - 1])
 {
     block_decoder_inputs in = {.name = name,
                                .widths = n->config->widths,
@@ -59,7 +59,7 @@ static void decode_material(model_network *n, const char *name, nn_node *feature
     block_decoder(n->g, &in, features);
 }
 
-static void material_by_one_decoder(model_network *n)
+static void material_by_one_decoder(model_nodes *n)
 {
     nn_graph *g = n->g;
     decode_material(n, "material", n->material);
@@ -74,7 +74,7 @@ static void material_by_one_decoder(model_network *n)
     n->maps.depth = model_shape_depth(g, nn_tanh(g, nn_slice(g, y, 7, 1)));
 }
 
-static void material_by_four_decoders(model_network *n)
+static void material_by_four_decoders(model_nodes *n)
 {
     nn_graph *g = n->g;
     static const char *const decoders[4] = {"material_albedo", "material_normal", "material_roughness",
@@ -96,7 +96,7 @@ static void material_by_four_decoders(model_network *n)
     n->maps.depth = model_shape_depth(g, nn_tanh(g, y[3]));
 }
 
-static void relight_by_network(model_network *n)
+static void relight_by_network(model_nodes *n)
 {
     nn_graph *g = n->g;
     /* three fully connected layers, repeated over the bottleneck (Sang & Chandraker 2020) */
@@ -120,7 +120,7 @@ static void relight_by_network(model_network *n)
 
 /* Adds a vector predicted from the encoder's two deepest features, averaged over the image: the photograph's light. It
  * is scaled to be small at first, lest a bright prediction teach the maps to be black. */
-static nn_node *estimate_light(model_network *n, const char *first, const char *second, int values)
+static nn_node *estimate_light(model_nodes *n, const char *first, const char *second, int values)
 {
     nn_graph *g = n->g;
     nn_node *parts[2];
@@ -157,20 +157,20 @@ static nn_node *global_illumination(nn_graph *g, const model_config *config, con
     return nn_gate(g, nn_scale_shift(g, y, 0.1f, 0.0f), mask);
 }
 
-nn_node *model_render(const model_network *n, nn_node *light)
+nn_node *model_render(const model_nodes *n, nn_node *light)
 {
     nn_render_inputs in = {n->maps.albedo, n->maps.normal, n->maps.roughness, n->maps.depth, n->mask, light, n->lens};
     return nn_render(n->g, &in, CAMERA_FOV, LIGHT_POWER);
 }
 
-static nn_node *render_environment(model_network *n, nn_node *code)
+static nn_node *render_environment(model_nodes *n, nn_node *code)
 {
     return nn_environment(n->g, n->maps.albedo, n->maps.normal, n->mask, decode_sh(n->g, code));
 }
 
 /* Adds what shows where each picture's strongest lamp is blocked: by the object's features and, of several pictures,
  * its own. */
-static nn_node *estimate_visibility(model_network *n)
+static nn_node *estimate_visibility(model_nodes *n)
 {
     nn_graph *g = n->g;
     nn_node *x = n->material[0];
@@ -180,12 +180,12 @@ static nn_node *estimate_visibility(model_network *n)
     return nn_sigmoid(g, block_head(g, x, "visibility.head", 1));
 }
 
-static void add_light(model_network *n)
+static void add_light(model_nodes *n)
 {
     n->light = nn_input(n->g, "light", model_light_size(n->config), NN_VECTOR);
 }
 
-static void build_lights(model_network *n, model_part part)
+static void build_lights(model_nodes *n, model_part part)
 {
     nn_graph *g = n->g;
     bool both = n->config->lighting == MODEL_LIGHT_BOTH, any = n->config->lighting == MODEL_LIGHT_ANY;
@@ -208,7 +208,7 @@ static void build_lights(model_network *n, model_part part)
 }
 
 /* Adds the encoder, which sees every picture. */
-static void encode(model_network *n)
+static void encode(model_nodes *n)
 {
     nn_graph *g = n->g;
     const model_config *c = n->config;
@@ -225,7 +225,7 @@ static void encode(model_network *n)
     }
 }
 
-static void build_network(model_network *n, model_part part)
+static void build_network(model_nodes *n, model_part part)
 {
     n->mask = model_object_input(n, "mask", 1, 1);
     n->light_position = model_object_input(n, "light_position", 3, NN_VECTOR);
@@ -249,7 +249,7 @@ static int feature_level(int feature)
 }
 
 /* Returns where one of model_features is stored in the network. */
-static nn_node **feature_node(model_network *n, int feature)
+static nn_node **feature_node(model_nodes *n, int feature)
 {
     return feature < MODEL_LEVELS ? &n->encoder[feature] : &n->material[feature_level(feature)];
 }
@@ -267,13 +267,13 @@ static int feature_count(const model_config *config)
     return config->feature_sharing ? MODEL_FEATURES : MODEL_LEVELS;
 }
 
-static void name_features(model_network *n)
+static void name_features(model_nodes *n)
 {
     for (int i = 0; i < feature_count(n->config); i++)
         nn_output(n->g, *feature_node(n, i), model_features[i]);
 }
 
-static void name_outputs(const model_network *n)
+static void name_outputs(const model_nodes *n)
 {
     nn_graph *g = n->g;
     if (n->config->only_lights) {
@@ -304,7 +304,7 @@ static status build_indirect(nn_graph *g, const model_config *config)
     m.roughness = nn_input(g, "roughness", 1, 1);
     m.depth = nn_input(g, "depth", 1, 1);
     if (config->rival) {
-        const model_network n = {
+        const model_nodes n = {
             .g = g, .config = config, .mask = nn_input(g, "mask", 1, 1), .maps = m, .direct = direct};
         nn_output(g, rival_bounces(&n), "indirect");
         return OK;
@@ -319,7 +319,7 @@ static status build_relighting(nn_graph *g, const model_config *config)
     if (config->relight != MODEL_RELIGHT_NETWORK)
         return fail(MERLIN_WRONG_USE, "model \"%s\" has no relighting decoder", config->name);
     if (config->rival) return fail(MERLIN_WRONG_USE, "model \"%s\" relights with all of its stages", config->name);
-    model_network n = {.g = g, .config = config, .mask = nn_input(g, "mask", 1, 1)};
+    model_nodes n = {.g = g, .config = config, .mask = nn_input(g, "mask", 1, 1)};
     for (int i = 0; i < feature_count(config); i++) {
         int level = feature_level(i);
         *feature_node(&n, i) = nn_compute(g, nn_input(g, model_features[i], config->widths[level], 2 << level));
@@ -341,7 +341,7 @@ status model_build(const model_config *config, model_part part, nn_graph **out)
     } else if (part == MODEL_RELIGHT) {
         s = build_relighting(g, config);
     } else {
-        model_network n = {.g = g, .config = config};
+        model_nodes n = {.g = g, .config = config};
         if (config->rival)
             rival_build(&n, part);
         else

@@ -3,14 +3,14 @@
 
 #include <stdio.h>
 
-nn_node *model_object_input(const model_network *n, const char *name, int channels, int reduction)
+nn_node *model_object_input(const model_nodes *n, const char *name, int channels, int reduction)
 {
     return n->config->several ? nn_group_input(n->g, name, channels, reduction)
                               : nn_input(n->g, name, channels, reduction);
 }
 
 /* Adds the inputs that predictions are compared with, once. */
-static const model_truth *truth_of(model_network *n)
+static const model_truth *truth_of(model_nodes *n)
 {
     model_truth *t = &n->truth;
     if (t->mask) return t;
@@ -24,7 +24,7 @@ static const model_truth *truth_of(model_network *n)
 }
 
 /* Adds the losses of relighting: by the network, and by the maps' BRDF where that has a loss of its own. */
-static void add_relighting_losses(model_network *n, model_part part)
+static void add_relighting_losses(model_nodes *n, model_part part)
 {
     nn_graph *g = n->g;
     const model_truth *t = truth_of(n);
@@ -39,7 +39,7 @@ static void add_relighting_losses(model_network *n, model_part part)
 
 /* Adds the losses of the predicted light and of the visibility of the strongest lamp. A vector's weight depends on how
  * much there is to predict. */
-static void add_light_losses(model_network *n)
+static void add_light_losses(model_nodes *n)
 {
     nn_graph *g = n->g;
     nn_node *truth = nn_input(g, "lights_true", MODEL_LIGHTS, NN_VECTOR);
@@ -63,7 +63,7 @@ static void add_light_losses(model_network *n)
                  "visibility", 1.0f);
 }
 
-void model_add_stage_losses(model_network *n, int stage)
+void model_add_stage_losses(model_nodes *n, int stage)
 {
     const model_truth *t = truth_of(n);
     const struct {
@@ -82,7 +82,7 @@ void model_add_stage_losses(model_network *n, int stage)
     }
 }
 
-void model_add_losses(model_network *n, model_part part)
+void model_add_losses(model_nodes *n, model_part part)
 {
     nn_graph *g = n->g;
     if (n->config->only_lights) {

@@ -15,7 +15,7 @@ typedef struct model_truth {
     nn_node *mask, *albedo, *normal, *roughness, *depth, *relit;
 } model_truth;
 
-typedef struct model_network {
+typedef struct model_nodes {
     nn_graph *g;
     const model_config *config;
     nn_node *mask, *light_position;
@@ -30,21 +30,21 @@ typedef struct model_network {
     nn_node *lights, *visibility;            /* NULL unless "lighting" is "any" */
     nn_node *direct, *indirect, *relit_direct, *relit_brdf;
     model_truth truth; /* zero until there are losses */
-} model_network;
+} model_nodes;
 
 /* Adds an input that is the same for all pictures of an object. */
-nn_node *model_object_input(const model_network *n, const char *name, int channels, int reduction);
+nn_node *model_object_input(const model_nodes *n, const char *name, int channels, int reduction);
 
 /* Adds depth = 1 / (0.4 (y + 1) + 0.25) with y = 3 x + 2, x in [-1, 1]: from 0.38 to 4. With y = x, as published, the
  * nearest depth would be 0.95, behind the front of an object at 1. */
 nn_node *model_shape_depth(nn_graph *g, nn_node *x);
 
 /* Adds the image of the maps under a point light, by the rendering layer. */
-nn_node *model_render(const model_network *n, nn_node *light);
+nn_node *model_render(const model_nodes *n, nn_node *light);
 
 /* Adds the paper's losses, weight 2 for normals and 1 for the rest, and the additional ones. */
-void model_add_losses(model_network *n, model_part part);
+void model_add_losses(model_nodes *n, model_part part);
 /* Adds losses of the maps, and of the relighting network, of a stage that is not the last, under names of their own. */
-void model_add_stage_losses(model_network *n, int stage);
+void model_add_stage_losses(model_nodes *n, int stage);
 
 #endif

@@ -6,7 +6,7 @@
 enum { LIGHT_VALUES = 3 };
 
 /* Adds the target light's code: three fully connected layers with tanh. */
-static nn_node *light_code(model_network *n)
+static nn_node *light_code(model_nodes *n)
 {
     nn_graph *g = n->g;
     n->light = nn_input(g, "light", LIGHT_VALUES, NN_VECTOR);
@@ -29,7 +29,7 @@ static nn_node *linear_image(nn_graph *g, nn_node *image)
 
 /* Returns what a cascade sees: the image, the mask, the maps before, their rendering under the flash and, for Sang, the
  * relit image, for Li what the rendering lacks of the image. */
-static nn_node *seen_of(const model_network *n, nn_node *image)
+static nn_node *seen_of(const model_nodes *n, nn_node *image)
 {
     nn_graph *g = n->g;
     const model_maps *m = &n->maps;
@@ -39,7 +39,7 @@ static nn_node *seen_of(const model_network *n, nn_node *image)
     return nn_stop(g, nn_gate(g, nn_concat(g, parts, 8), n->mask));
 }
 
-void rival_build(model_network *n, model_part part)
+void rival_build(model_nodes *n, model_part part)
 {
     nn_graph *g = n->g;
     n->mask = nn_input(g, "mask", 1, 1);

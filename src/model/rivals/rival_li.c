@@ -9,7 +9,7 @@ enum { MAPS = 4, BOUNCE_SCALES = 5, DILATED_SCALE = 3 };
 
 static const char *const map_names[MAPS] = {"albedo", "normal", "roughness", "depth"};
 
-static void first_stage(model_network *n, nn_node *seen)
+static void first_stage(model_nodes *n, nn_node *seen)
 {
     nn_node *skips[RIVAL_SCALES], *y[MAPS];
     rival_encoder(n->g, seen, "encoder", skips);
@@ -22,7 +22,7 @@ static void first_stage(model_network *n, nn_node *seen)
     rival_take_maps(n, y);
 }
 
-static void cascade(model_network *n, const char *stage, nn_node *seen)
+static void cascade(model_nodes *n, const char *stage, nn_node *seen)
 {
     nn_node *y[MAPS], *half, *x = rival_refining_encoder(n->g, seen, stage, &half);
     for (int k = 0; k < MAPS; k++) {
@@ -33,7 +33,7 @@ static void cascade(model_network *n, const char *stage, nn_node *seen)
     rival_take_maps(n, y);
 }
 
-void rival_li_stage(model_network *n, int stage, nn_node *seen)
+void rival_li_stage(model_nodes *n, int stage, nn_node *seen)
 {
     char name[RIVAL_NAME];
     snprintf(name, sizeof name, "cascade%d", stage);
@@ -44,7 +44,7 @@ void rival_li_stage(model_network *n, int stage, nn_node *seen)
 }
 
 /* Adds the light of the next bounce, from that of the one before. */
-static nn_node *next_bounce(const model_network *n, nn_node *before, const char *name)
+static nn_node *next_bounce(const model_nodes *n, nn_node *before, const char *name)
 {
     static const int down[BOUNCE_SCALES] = {64, 64, 128, 256, 256}, up[BOUNCE_SCALES] = {64, 32, 64, 128, 256};
     nn_graph *g = n->g;
@@ -70,7 +70,7 @@ static nn_node *next_bounce(const model_network *n, nn_node *before, const char 
     return nn_gate(g, nn_scale_shift(g, y, 0.1f, 0.0f), n->mask);
 }
 
-nn_node *rival_bounces(const model_network *n)
+nn_node *rival_bounces(const model_nodes *n)
 {
     nn_node *second = next_bounce(n, nn_stop(n->g, n->direct), "bounce2");
     return nn_add(n->g, second, next_bounce(n, nn_stop(n->g, second), "bounce3"));

@@ -109,7 +109,7 @@ static nn_node *mean_of_three(nn_graph *g, nn_node *x)
     return nn_scale_shift(g, nn_add(g, sum, nn_slice(g, x, 2, 1)), 1 / 3.0f, 0.0f);
 }
 
-void rival_take_maps(model_network *n, nn_node *const y[4])
+void rival_take_maps(model_nodes *n, nn_node *const y[4])
 {
     n->maps.albedo = y[0];
     n->maps.normal = nn_normalize(n->g, y[1]);

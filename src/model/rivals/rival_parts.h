@@ -47,7 +47,7 @@ typedef struct rival_refining {
 nn_node *rival_refine(nn_graph *g, const rival_refining *in, nn_node **half);
 
 /* Takes the maps from three channels each of albedo, normal, roughness and depth, the latter two being means. */
-void rival_take_maps(model_network *n, nn_node *const y[4]);
+void rival_take_maps(model_nodes *n, nn_node *const y[4]);
 
 /* Writes "a.b" into a buffer of RIVAL_NAME characters. */
 enum { RIVAL_NAME = 96 };

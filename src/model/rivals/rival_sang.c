@@ -7,7 +7,7 @@
 
 enum { BRDF_CHANNELS = 12 };
 
-static void take_maps(model_network *n, nn_node *y)
+static void take_maps(model_nodes *n, nn_node *y)
 {
     nn_node *parts[4];
     for (int k = 0; k < 4; k++)
@@ -15,12 +15,12 @@ static void take_maps(model_network *n, nn_node *y)
     rival_take_maps(n, parts);
 }
 
-static void take_relit(model_network *n, nn_node *y)
+static void take_relit(model_nodes *n, nn_node *y)
 {
     n->relit_direct = nn_gate(n->g, nn_scale_shift(n->g, y, 0.5f, 0.5f), n->mask);
 }
 
-static void first_stage(model_network *n, nn_node *seen, nn_node *light)
+static void first_stage(model_nodes *n, nn_node *seen, nn_node *light)
 {
     nn_graph *g = n->g;
     nn_node *skips[RIVAL_SCALES], *shared[RIVAL_SCALES - 1];
@@ -35,7 +35,7 @@ static void first_stage(model_network *n, nn_node *seen, nn_node *light)
     take_relit(n, rival_head(g, y, "relight.head", 3));
 }
 
-static void cascade(model_network *n, const char *stage, nn_node *seen, nn_node *light)
+static void cascade(model_nodes *n, const char *stage, nn_node *seen, nn_node *light)
 {
     nn_graph *g = n->g;
     char name[RIVAL_NAME], part[RIVAL_NAME];
@@ -48,7 +48,7 @@ static void cascade(model_network *n, const char *stage, nn_node *seen, nn_node 
     take_relit(n, rival_refine(g, &(rival_refining){name, x, {half, own}, 3}, NULL));
 }
 
-void rival_sang_stage(model_network *n, int stage, nn_node *seen, nn_node *light)
+void rival_sang_stage(model_nodes *n, int stage, nn_node *seen, nn_node *light)
 {
     char name[RIVAL_NAME];
     snprintf(name, sizeof name, "cascade%d", stage);

@@ -13,7 +13,7 @@
 #include "estimate/files/overview.h"
 #include "estimate/photo/model_pair.h"
 #include "image/resize.h"
-#include "lab/cli/eval_commands.h"
+#include "lab/cli/eval/eval_commands.h"
 
 static const char help[] =
     "usage: merlin-lab eval photos PHOTO|FOLDER... --model W [--model W2 ...] -o FILE.png\n\n"

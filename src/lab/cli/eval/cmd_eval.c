@@ -10,7 +10,7 @@
 #include "command/json_line.h"
 #include "command/options.h"
 #include "command/photos.h"
-#include "lab/cli/eval_commands.h"
+#include "lab/cli/eval/eval_commands.h"
 #include "lab/cli/lab_commands.h"
 #include "lab/eval/samples/evaluate.h"
 #include "lab/eval/samples/sample_report.h"

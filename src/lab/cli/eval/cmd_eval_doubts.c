@@ -12,7 +12,7 @@
 #include "command/options.h"
 #include "command/photo_ahead.h"
 #include "estimate/photo/model_pair.h"
-#include "lab/cli/eval_commands.h"
+#include "lab/cli/eval/eval_commands.h"
 #include "lab/eval/tables/doubt_table.h"
 #include "lab/render/sample.h"
 

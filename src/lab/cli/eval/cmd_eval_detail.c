@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* merlin-lab eval lights: the accuracy of estimates by kind of light. */
+/* merlin-lab eval detail: what a larger picture adds to an estimate's shape. */
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,27 +9,24 @@
 #include "command/options.h"
 #include "command/photos.h"
 #include "estimate/photo/network.h"
-#include "lab/cli/eval_commands.h"
-#include "lab/eval/tables/light_table.h"
+#include "lab/cli/eval/eval_commands.h"
+#include "lab/eval/tables/detail_table.h"
 
 static const char help[] =
-    "usage: merlin-lab eval lights --data DIR [options]\n\n"
-    "The errors of merlin estimate by the kind of light in the photograph: flash, flash in a room, room, lamps by "
-    "their\n"
-    "angle from the line to the camera, a lamp in a room, on samples that merlin-lab render made with --lamps (and\n"
-    "--lamp-angles for lamps at these).\n\n"
+    "usage: merlin-lab eval detail --data DIR [options]\n\n"
+    "The errors of merlin estimate on samples of more than 256 pixels a side (merlin-lab render --size 512) when the\n"
+    "network sees them in 256 pixels, in up to 512, and in both, as it does unless --size says otherwise.\n\n"
     "  --data DIR       held-out samples\n"
     "  --model W        weights (default: those merlin estimate takes)\n"
     "  --count N        only the first N samples\n"
     "  --views N        maps as merlin estimate --views N makes them (default 4, as there)\n"
-    "  --lens-unknown   as if nothing were known of the lens\n"
     "      --json       report on standard output as JSON\n"
     "  -t, --threads N  how many threads work (default: one a processor)\n"
     "  -q, --quiet      no progress\n"
     "  -h, --help       this text\n";
 
 typedef struct request {
-    light_options options;
+    detail_options options;
     bool json, help;
 } request;
 
@@ -40,7 +37,6 @@ static status parse(int argc, char **argv, request *r)
         {"model", .text = &r->options.weights},
         {"count", .count = &r->options.count, .low = 1, .high = 1000000},
         {"views", .integer = &r->options.views, .low = 1, .high = 8},
-        {"lens-unknown", .flag = &r->options.lens_unknown},
         {"json", .flag = &r->json},
         {"quiet", 'q', .flag = &r->options.quiet},
         {"help", 'h', .flag = &r->help},
@@ -52,27 +48,25 @@ static status parse(int argc, char **argv, request *r)
     return r->options.data ? OK : fail(MERLIN_WRONG_USE, "--data DIR is missing");
 }
 
-static status announce(const request *r, const light_table *t)
+static status announce(const request *r, const detail_table *t)
 {
-    if (r->json) return json_report_print(light_table_json(t));
-    light_table_print(t, stdout);
+    if (r->json) return json_report_print(detail_table_json(t));
+    detail_table_print(t, stdout);
     return OK;
 }
 
-int eval_lights(int argc, char **argv)
+int eval_detail(int argc, char **argv)
 {
     request r = {.options = {.views = NETWORK_VIEWS, .stopped = cli_interrupted}};
-    if (parse(argc, argv, &r) != OK) return cli_usage("eval lights", "%s", status_message());
+    if (parse(argc, argv, &r) != OK) return cli_usage("eval detail", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
     cli_catch_interrupts();
-    char *weights, *flash;
-    light_table table;
-    status s = photo_find_models(r.options.weights, &weights, &flash);
+    char *weights;
+    detail_table table;
+    status s = photo_find_model(r.options.weights, &weights);
     r.options.weights = weights;
-    r.options.flash = flash;
-    if (s == OK) s = light_table_run(&r.options, &table);
+    if (s == OK) s = detail_table_run(&r.options, &table);
     free(weights);
-    free(flash);
     if (s == OK) s = announce(&r, &table);
-    return s == OK ? 0 : cli_fail("eval lights", s);
+    return s == OK ? 0 : cli_fail("eval detail", s);
 }

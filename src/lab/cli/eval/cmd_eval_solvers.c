@@ -6,7 +6,7 @@
 #include "command/cli.h"
 #include "command/json_line.h"
 #include "command/options.h"
-#include "lab/cli/eval_commands.h"
+#include "lab/cli/eval/eval_commands.h"
 #include "lab/eval/stereo/solver_table.h"
 
 static const char help[] =

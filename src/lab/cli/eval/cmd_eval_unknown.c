@@ -9,7 +9,7 @@
 #include "command/options.h"
 #include "command/photos.h"
 #include "estimate/photo/network.h"
-#include "lab/cli/eval_commands.h"
+#include "lab/cli/eval/eval_commands.h"
 #include "lab/eval/stereo/unknown_table.h"
 
 static const char help[] =

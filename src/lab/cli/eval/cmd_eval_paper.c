@@ -9,7 +9,7 @@
 #include "command/json_line.h"
 #include "command/options.h"
 #include "command/photos.h"
-#include "lab/cli/eval_commands.h"
+#include "lab/cli/eval/eval_commands.h"
 #include "lab/eval/paper/paper_table.h"
 #include "lab/eval/paper/paper_table3.h"
 
