@@ -10,11 +10,11 @@ merlin_module(lab/scene PARTS . shape material object
 merlin_module(lab/render LINK merlin_scene embree)
 target_compile_definitions(merlin_render PRIVATE MERLIN_EMBREE=${embree_VERSION_MAJOR})
 merlin_module(lab/train LINK merlin_model merlin_render)
-merlin_module(lab/eval PARTS metrics samples tables stereo
+merlin_module(lab/eval PARTS metrics samples tables stereo paper
   LINK merlin_train merlin_photo_stereo)
 merlin_module(lab/onnx LINK merlin_model)
 merlin_module(lab/bench LINK merlin_eval)
-merlin_program(merlin-lab lab/cli LINK merlin_command merlin_bench merlin_onnx)
+merlin_program(merlin-lab lab/cli PARTS . eval LINK merlin_command merlin_bench merlin_onnx)
 add_dependencies(merlin-lab merlin) # which its bench runs
 
 # merlin-lab train --mpi, where there is an MPI.

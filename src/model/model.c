@@ -6,6 +6,7 @@
 #include "model/blocks.h"
 #include "model/model_network.h"
 #include "model/rivals/rival.h"
+#include "model/rivals/rival_li.h"
 #include "model/sh_bands.h"
 #include "optics/light.h"
 
@@ -41,11 +42,6 @@ static nn_node *decode_sh(nn_graph *g, nn_node *code)
     for (int band = 0; band < SH_BANDS; band++)
         parts[band] = nn_scale_shift(g, nn_slice(g, code, sh_first[band], sh_count[band]), 1 / sh_scale[band], 0.0f);
     return nn_concat(g, parts, SH_BANDS);
-}
-
-nn_node *model_shape_depth(nn_graph *g, nn_node *x)
-{
-    return nn_reciprocal(g, x, 1.2f, 1.45f);
 }
 
 static void decode_material(model_nodes *n, const char *name, nn_node *features[MODEL_LEVELS - 1])
@@ -155,12 +151,6 @@ static nn_node *global_illumination(nn_graph *g, const model_config *config, con
     nn_node *y = block_head(g, features[0], "indirect.head", 3);
     /* indirect light is a few percent of direct: small from the first step on */
     return nn_gate(g, nn_scale_shift(g, y, 0.1f, 0.0f), mask);
-}
-
-nn_node *model_render(const model_nodes *n, nn_node *light)
-{
-    nn_render_inputs in = {n->maps.albedo, n->maps.normal, n->maps.roughness, n->maps.depth, n->mask, light, n->lens};
-    return nn_render(n->g, &in, CAMERA_FOV, LIGHT_POWER);
 }
 
 static nn_node *render_environment(model_nodes *n, nn_node *code)

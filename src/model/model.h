@@ -47,6 +47,7 @@
 
 #include "model/model_codes.h"
 #include "model/model_config.h"
+#include "model/model_part.h"
 #include "nn/nn.h"
 
 enum { MODEL_SIZE_MULTIPLE = 32, MODEL_LOSSES = 18 };
@@ -54,17 +55,6 @@ enum { MODEL_SIZE_MULTIPLE = 32, MODEL_LOSSES = 18 };
 /* Names of the losses; a variant may lack some (nn_loss: NAN). New ones are appended, so that columns of older curves
  * keep their meaning. */
 extern const char *const model_losses[MODEL_LOSSES];
-
-/* Offsets of the parts of "lights". Strengths are in the photograph's radiance: 1 is that of a lamp of power
- * LIGHT_POWER at distance 1. They span orders of magnitude, hence model_encode_strength. */
-enum {
-    MODEL_LIGHTS_FLASH = 0,    /* the flash's strength, encoded */
-    MODEL_LIGHTS_LAMP = 1,     /* direction to the strongest lamp, as long as the network is confident: 3 */
-    MODEL_LIGHTS_DISTANCE = 4, /* inverse of its distance from there; 0: far away */
-    MODEL_LIGHTS_STRENGTH = 5, /* its strength in the object's middle, encoded, by channel: 3 */
-    MODEL_LIGHTS_REST = 8,     /* model_encode_sh of all other light: MODEL_SH */
-    MODEL_LIGHTS = 8 + MODEL_SH
-};
 
 /* Names of the relighting decoder's inputs that do not depend on the light, ended by NULL: the encoder's features at
  * levels 0 to 4 and the material decoder's at 0 to 3, level i of widths[i] channels at 1/2^(i+1) of the size. A variant
@@ -74,16 +64,6 @@ extern const char *const model_features[MODEL_FEATURES + 1];
 /* Returns the number of values of one of them, for a picture of size × size. */
 size_t model_feature_values(const model_config *config, int feature, int size);
 
-typedef enum model_part {
-    MODEL_WHOLE,         /* everything that is computed once for a photograph */
-    MODEL_TRAINING,      /* MODEL_WHOLE with losses */
-    MODEL_TRAINING_BRDF, /* with "relight_brdf" of "relit_brdf", too, where "relight" is the network's */
-    MODEL_TRAINING_SSIM, /* with "relight_ssim" and "relight_brdf_ssim", too, structural dissimilarity of both */
-    MODEL_MAPS,          /* MODEL_WHOLE without what depends on a new light, but with the outputs model_features */
-    MODEL_INDIRECT, /* the global-illumination network alone: inputs "direct", "albedo", "normal", "roughness", "depth",
-                     * "mask", for both lights "environment"; output "indirect" */
-    MODEL_RELIGHT,  /* the relighting decoder alone: inputs model_features, "mask" and "light"; output "relit_direct" */
-} model_part;
 status model_build(const model_config *config, model_part part, nn_graph **out);
 
 /* Reads a weights file: configuration and parameters. *params fits MODEL_WHOLE's graph and is for inference only

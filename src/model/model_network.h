@@ -4,7 +4,8 @@
 #ifndef MERLIN_MODEL_MODEL_NETWORK_H
 #define MERLIN_MODEL_MODEL_NETWORK_H
 
-#include "model/model.h"
+#include "model/model_part.h"
+#include "nn/nn.h"
 
 typedef struct model_maps {
     nn_node *albedo, *normal, *roughness, *depth; /* float, full size */

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "model/rivals/rival.h"
 
-#include "optics/light.h"
+#include "model/rivals/rival_li.h"
+#include "model/rivals/rival_parts.h"
+#include "model/rivals/rival_sang.h"
 
 enum { LIGHT_VALUES = 3 };
 

@@ -12,17 +12,7 @@
 
 #include "model/model_network.h"
 
-enum { RIVAL_SCALES = 6, RIVAL_WIDTH = 64, RIVAL_REFINED = 128 };
-
 /* Builds the network of n->config->rival into n. */
 void rival_build(model_nodes *n, model_part part);
-
-/* Add a stage's maps, and what relights (Sang). stage: 0 or the cascade. seen: what the stage sees, float; light: the
- * target's code, RIVAL_REFINED values, NULL for Li. Parameters are named by the stage. */
-void rival_li_stage(model_nodes *n, int stage, nn_node *seen);
-void rival_sang_stage(model_nodes *n, int stage, nn_node *seen, nn_node *light);
-
-/* Adds Li's two networks, which predict the light of bounces 2 and 3 from the rendering and the maps. */
-nn_node *rival_bounces(const model_nodes *n);
 
 #endif

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Li, Xu, Ramamoorthi, Sunkavalli and Chandraker, SIGGRAPH Asia 2018. */
+#include "model/rivals/rival_li.h"
+
 #include <stdio.h>
 
-#include "model/rivals/rival.h"
 #include "model/rivals/rival_parts.h"
 
 enum { MAPS = 4, BOUNCE_SCALES = 5, DILATED_SCALE = 3 };

@@ -3,8 +3,6 @@
 
 #include <stdio.h>
 
-#include "model/rivals/rival.h"
-
 enum { COARSE_BLOCKS = 3 };
 
 static const int encoder_widths[RIVAL_SCALES] = {32, 64, 128, 256, 256, 512};

@@ -5,6 +5,8 @@
 
 #include "model/model_network.h"
 
+enum { RIVAL_SCALES = 6, RIVAL_WIDTH = 64, RIVAL_REFINED = 128 };
+
 /* Adds a convolution of stride 2. */
 nn_node *rival_down(nn_graph *g, nn_node *x, const char *name, int out, int kernel);
 /* Adds a transposed 4×4 convolution of stride 2. */

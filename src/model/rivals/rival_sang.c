@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Sang and Chandraker, ECCV 2020. */
+#include "model/rivals/rival_sang.h"
+
 #include <stdio.h>
 
-#include "model/rivals/rival.h"
 #include "model/rivals/rival_parts.h"
 
 enum { BRDF_CHANNELS = 12 };

@@ -3,10 +3,24 @@
 
 #include <stdio.h>
 
+#include "optics/camera.h"
+#include "optics/light.h"
+
 nn_node *model_object_input(const model_nodes *n, const char *name, int channels, int reduction)
 {
     return n->config->several ? nn_group_input(n->g, name, channels, reduction)
                               : nn_input(n->g, name, channels, reduction);
+}
+
+nn_node *model_shape_depth(nn_graph *g, nn_node *x)
+{
+    return nn_reciprocal(g, x, 1.2f, 1.45f);
+}
+
+nn_node *model_render(const model_nodes *n, nn_node *light)
+{
+    nn_render_inputs in = {n->maps.albedo, n->maps.normal, n->maps.roughness, n->maps.depth, n->mask, light, n->lens};
+    return nn_render(n->g, &in, CAMERA_FOV, LIGHT_POWER);
 }
 
 /* Adds the inputs that predictions are compared with, once. */
