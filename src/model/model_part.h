@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What a graph is built for, and what its output "lights" consists of (model.h). */
+/* Parts that a graph is built for, and those of its output "lights" (model.h). */
 #ifndef MERLIN_MODEL_MODEL_PART_H
 #define MERLIN_MODEL_MODEL_PART_H
 

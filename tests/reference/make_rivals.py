@@ -11,10 +11,9 @@ import os
 import torch
 import torch.nn.functional as F
 
-from make_reference import render
-from numbers_by_name import Params, as_float, hashed, write_safetensors
+from make_reference import STRIDE, make_inputs, render
+from numbers_by_name import Params, write_safetensors
 
-SIZE, STRIDE = 64, 8
 ENCODER, DECODER = (32, 64, 128, 256, 256, 512), (64, 32, 64, 128, 256, 256)
 
 
@@ -150,16 +149,8 @@ def li(r, inputs):
     return out
 
 
-def make_inputs():
-    y, x = torch.meshgrid(torch.arange(SIZE), torch.arange(SIZE), indexing="ij")
-    disc = ((2 * x + 1 - SIZE) ** 2 + (2 * y + 1 - SIZE) ** 2 < 4 * 26**2).to(torch.float64).expand(1, 1, SIZE, SIZE)
-    image = as_float(0.5 * hashed("image", SIZE * SIZE * 3) + 0.5).reshape(1, SIZE, SIZE, 3).permute(0, 3, 1, 2)
-    return {"mask": disc, "image": image * disc, "light": hashed("light", 3).reshape(1, 3),
-            "light_position": as_float(0.5 * hashed("light_position", 3)).reshape(1, 3)}
-
-
 def main():
-    tensors, inputs = {}, make_inputs()
+    tensors, inputs = {}, {name: value[:1] for name, value in make_inputs().items()}
     for name, network in (("sang", sang), ("li", li)):
         with torch.no_grad():
             out = network(Rival(), inputs)

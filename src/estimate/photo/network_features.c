@@ -61,8 +61,7 @@ static status relight_view(network *n, const network_features *features, const i
 {
     img relit = {0};
     const bool rival = n->config.rival != MODEL_NO_RIVAL;
-    status s = rival ? network_compile(n, MODEL_WHOLE, relit_outputs, mean->width, &n->relit)
-                     : network_compile(n, MODEL_RELIGHT, NULL, mean->width, &n->relit);
+    status s = network_compile(n, rival ? MODEL_WHOLE : MODEL_RELIGHT, relit_outputs, mean->width, &n->relit);
     if (s != OK) return s;
     nn_program *p = n->relit.program;
     if (rival)

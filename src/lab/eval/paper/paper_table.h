@@ -18,7 +18,7 @@
 #include "base/status.h"
 #include "lab/eval/paper/paper_figures.h"
 
-/* What several runs of one model, which differ in their seeds, give. */
+/* Figures of the runs of one model, which differ in their seeds. */
 typedef struct paper_row {
     char model[64];
     int runs;

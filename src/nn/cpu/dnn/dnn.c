@@ -116,11 +116,6 @@ status dnn_make_reorder_to(dnn_call *call, const dnn_context *context, const dnn
     return s;
 }
 
-bool dnn_is_made(const dnn_call *call)
-{
-    return call->primitive || call->packing;
-}
-
 status dnn_run(const dnn_call *call, const dnn_context *context)
 {
     if (call->packing) {

@@ -56,8 +56,6 @@ status dnn_make_reorder_from(dnn_call *call, const dnn_context *context, dnn_lay
                              const dnn_shape *to, void *target);
 status dnn_make_reorder_to(dnn_call *call, const dnn_context *context, const dnn_shape *from, float *source,
                            dnn_layout to, void *target);
-/* Tells whether a call has been made. */
-bool dnn_is_made(const dnn_call *call);
 status dnn_run(const dnn_call *call, const dnn_context *context);
 void dnn_release(dnn_call *call);
 

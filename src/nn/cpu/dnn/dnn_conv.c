@@ -1,24 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Convolutions by oneDNN.
- *
- * Activations are channels-last. Weights are float32 in PyTorch's order outside; each primitive gets a copy in the
- * layout and type it asked for, converted again after every change, with batch norm by running statistics folded into
- * it. */
+/* Convolutions by oneDNN. */
 #include <stdlib.h>
 
-#include "base/memory.h"
-#include "nn/cpu/dnn/dnn.h"
+#include "nn/cpu/dnn/dnn_conv_state.h"
 #include "nn/cpu/kernels/conv_parts.h"
 #include "nn/cpu/kernels/kernels.h"
 #include "nn/cpu/kernels/steps.h"
-
-typedef struct conv {
-    dnn_call forward, data, weights;
-    dnn_call convert, convert_back, collect; /* weights to forward and backward-data; gradient from weights */
-    dnn_shape plain;                         /* the float32 weights */
-    void *folded_bias, *forward_weights, *data_weights, *weight_gradient;
-    bool has_bias, adds_behind; /* adds_behind: the sum and ReLU are computed here, behind the primitive */
-} conv;
 
 static dnn_shape weights_shape(const nn_step *step, nn_type type, dnnl_format_tag_t order)
 {
@@ -59,7 +46,7 @@ static dnn_convolution convolution_of(const nn_step *step, dnnl_prop_kind_t kind
 /* Describes the forward primitive. Convolutions by matrix products, which oneDNN 2.6 falls back to where it has nothing
  * for the processor (on arm64 always, on x86 without AVX2 for few channels), add another pixel's values than those
  * asked for to channels-last results: there the sum is computed behind them. */
-static status describe_forward(nn_step *step, conv *state)
+static status describe_forward(nn_step *step, dnn_conv_state *state)
 {
     dnn_convolution wanted = convolution_of(step, step->train ? dnnl_forward_training : dnnl_forward_inference);
     wanted.target = dnn_activation(&step->out, step->out.type);
@@ -80,7 +67,7 @@ static status describe_forward(nn_step *step, conv *state)
 static status describe_hint(nn_step *step, dnn_call *hint)
 {
     nn_step bare = *step;
-    conv state = {.has_bias = step->at.bias};
+    dnn_conv_state state = {.has_bias = step->at.bias};
     bare.relu = false;
     bare.out.type = step->compute;
     status s = describe_forward(&bare, &state);
@@ -88,7 +75,7 @@ static status describe_hint(nn_step *step, dnn_call *hint)
     return s;
 }
 
-static status describe_data(nn_step *step, conv *state, const dnn_call *hint)
+static status describe_data(nn_step *step, dnn_conv_state *state, const dnn_call *hint)
 {
     dnn_convolution wanted = convolution_of(step, dnnl_backward_data);
     wanted.hint = hint;
@@ -104,7 +91,7 @@ static bool differs_from_run_to_run(const nn_step *step)
     return step->at.kernel == 1 && step->at.stride > 1 && step->in[0].c % 16 != 0;
 }
 
-static status describe_weights(nn_step *step, conv *state, const dnn_call *hint)
+static status describe_weights(nn_step *step, dnn_conv_state *state, const dnn_call *hint)
 {
     dnn_convolution wanted = convolution_of(step, dnnl_backward_weights);
     wanted.weights = any_weights(step, NN_FLOAT32);
@@ -114,12 +101,7 @@ static status describe_weights(nn_step *step, conv *state, const dnn_call *hint)
     return dnn_describe(&state->weights, step->context, &wanted);
 }
 
-static status own(nn_step *step, dnn_layout layout, void **memory)
-{
-    return conv_own(step, dnnl_memory_desc_get_size(layout), memory);
-}
-
-static status describe_backward(nn_step *step, conv *state)
+static status describe_backward(nn_step *step, dnn_conv_state *state)
 {
     dnn_call hint = {0};
     status s = describe_hint(step, &hint);
@@ -127,8 +109,9 @@ static status describe_backward(nn_step *step, conv *state)
     if (s == OK) s = describe_weights(step, state, &hint);
     dnn_release(&hint);
     if (s != OK) return s;
-    s = own(step, dnn_query(&state->weights, dnnl_query_diff_weights_md), &state->weight_gradient);
-    if (s == OK && step->wants[0]) s = own(step, dnn_query(&state->data, dnnl_query_weights_md), &state->data_weights);
+    s = dnn_conv_own(step, dnn_query(&state->weights, dnnl_query_diff_weights_md), &state->weight_gradient);
+    if (s == OK && step->wants[0])
+        s = dnn_conv_own(step, dnn_query(&state->data, dnnl_query_weights_md), &state->data_weights);
     if (s != OK) return s;
     size_t data = dnn_scratch_bytes(&state->data), weights = dnn_scratch_bytes(&state->weights);
     /* prepared gradient, gradient of the input before accumulation, oneDNN's own */
@@ -137,23 +120,9 @@ static status describe_backward(nn_step *step, conv *state)
     return OK;
 }
 
-static void conv_release(nn_step *step)
-{
-    conv *state = step->state;
-    dnn_call *calls[] = {&state->forward, &state->data,         &state->weights,
-                         &state->convert, &state->convert_back, &state->collect};
-    for (size_t i = 0; i < sizeof calls / sizeof calls[0]; i++)
-        dnn_release(calls[i]);
-    memory_free(state->folded_bias);
-    memory_free(state->forward_weights);
-    memory_free(state->data_weights);
-    memory_free(state->weight_gradient);
-    free(state);
-}
-
 static float *bias_data(const nn_step *step)
 {
-    const conv *state = step->state;
+    const dnn_conv_state *state = step->state;
     return state->folded_bias ? state->folded_bias : step->params.bias->value;
 }
 
@@ -163,7 +132,7 @@ static status bind_beside(const nn_step *step, dnn_call *call)
     return dnn_argument_of(call, step->context, DNN_ARG_BESIDE, &beside, step->in[1].data);
 }
 
-static status bind_forward(nn_step *step, conv *state)
+static status bind_forward(nn_step *step, dnn_conv_state *state)
 {
     const dnn_context *context = step->context;
     dnn_call *call = &state->forward;
@@ -199,7 +168,7 @@ static void *gradient_place(const nn_step *step)
     return conv_prepared(step, prepared_place(step));
 }
 
-static status bind_data(nn_step *step, conv *state)
+static status bind_data(nn_step *step, dnn_conv_state *state)
 {
     const dnn_context *context = step->context;
     dnn_call *call = &state->data;
@@ -212,7 +181,7 @@ static status bind_data(nn_step *step, conv *state)
     return s == OK ? dnn_make(call, library_place(step), context) : s;
 }
 
-static status bind_weights(nn_step *step, conv *state)
+static status bind_weights(nn_step *step, dnn_conv_state *state)
 {
     const dnn_context *context = step->context;
     dnn_call *call = &state->weights;
@@ -225,48 +194,21 @@ static status bind_weights(nn_step *step, conv *state)
     if (s == OK && state->has_bias)
         s = dnn_argument_of(call, context, DNNL_ARG_DIFF_BIAS, &db, step->params.bias->gradient);
     if (s == OK) s = dnn_make(call, library_place(step), context);
-    if (s == OK)
-        s = dnn_make_reorder_from(&state->collect, context, dw, state->weight_gradient, &state->plain,
-                                  step->params.weight->gradient);
-    return s;
+    return s == OK ? dnn_conv_collect(step, state) : s;
 }
 
 static status conv_bind(nn_step *step)
 {
-    conv *state = step->state;
+    dnn_conv_state *state = step->state;
     status s = bind_forward(step, state);
     if (s == OK && step->backs && step->wants[0]) s = bind_data(step, state);
     if (s == OK && step->backs) s = bind_weights(step, state);
     return s;
 }
 
-/* Makes the conversions where they are first used: oneDNN fixes the number of threads at the one in force then. */
-static status make_conversions(const nn_step *step, conv *state)
-{
-    const dnn_context *context = step->context;
-    float *master = conv_weights(step, step->forward_space);
-    dnn_layout w = dnn_query(&state->forward, dnnl_query_weights_md);
-    status s = dnn_make_reorder_to(&state->convert, context, &state->plain, master, w, state->forward_weights);
-    if (s != OK || !state->data.primitive) return s;
-    w = dnn_query(&state->data, dnnl_query_weights_md);
-    return dnn_make_reorder_to(&state->convert_back, context, &state->plain, master, w, state->data_weights);
-}
-
-static status conv_refresh(nn_step *step)
-{
-    conv *state = step->state;
-    status s = dnn_is_made(&state->convert) ? OK : make_conversions(step, state);
-    if (s != OK) return s;
-    /* into the forward scratch, which is free between runs */
-    conv_make_weights(step, step->forward_space, state->folded_bias);
-    s = dnn_run(&state->convert, step->context);
-    if (s == OK && dnn_is_made(&state->convert_back)) s = dnn_run(&state->convert_back, step->context);
-    return s;
-}
-
 static status conv_forward(nn_step *step)
 {
-    conv *state = step->state;
+    dnn_conv_state *state = step->state;
     status s = dnn_run(&state->forward, step->context);
     if (s != OK || !state->adds_behind) return s;
     cpu_add(&step->out, &step->in[1], &step->out);
@@ -276,7 +218,7 @@ static status conv_forward(nn_step *step)
 
 status conv_backward_data(nn_step *step)
 {
-    conv *state = step->state;
+    dnn_conv_state *state = step->state;
     status s = dnn_run(&state->data, step->context);
     if (s != OK || !step->accumulate[0]) return s;
     nn_tensor fresh = step->in_gradient[0];
@@ -287,7 +229,7 @@ status conv_backward_data(nn_step *step)
 
 status conv_backward_weights(nn_step *step)
 {
-    conv *state = step->state;
+    dnn_conv_state *state = step->state;
     status s = dnn_run(&state->weights, step->context);
     return s == OK ? dnn_run(&state->collect, step->context) : s;
 }
@@ -301,8 +243,9 @@ static status conv_backward(nn_step *step)
 
 status conv_create(nn_step *step)
 {
-    static const step_functions functions = {conv_bind, conv_refresh, conv_forward, conv_backward, conv_release};
-    conv *state = calloc(1, sizeof *state);
+    static const step_functions functions = {conv_bind, dnn_conv_refresh, conv_forward, conv_backward,
+                                             dnn_conv_release};
+    dnn_conv_state *state = calloc(1, sizeof *state);
     if (!state) return fail(MERLIN_NO_MEMORY, "no memory for a convolution");
     step->run = &functions;
     step->state = state;
@@ -313,7 +256,7 @@ status conv_create(nn_step *step)
     conv_count_flops(step);
     status s = conv_own_folded_bias(step, &state->folded_bias);
     if (s == OK) s = describe_forward(step, state);
-    if (s == OK) s = own(step, dnn_query(&state->forward, dnnl_query_weights_md), &state->forward_weights);
+    if (s == OK) s = dnn_conv_own(step, dnn_query(&state->forward, dnnl_query_weights_md), &state->forward_weights);
     if (s != OK) return s;
     step->forward_scratch = dnn_scratch_bytes(&state->forward);
     if (step->forward_scratch < conv_weights_bytes(step)) step->forward_scratch = conv_weights_bytes(step);

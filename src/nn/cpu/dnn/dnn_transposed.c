@@ -4,18 +4,10 @@
  * source and target exchanged. */
 #include <stdlib.h>
 
-#include "base/memory.h"
-#include "nn/cpu/dnn/dnn.h"
+#include "nn/cpu/dnn/dnn_conv_state.h"
 #include "nn/cpu/kernels/conv_parts.h"
 #include "nn/cpu/kernels/kernels.h"
 #include "nn/cpu/kernels/steps.h"
-
-typedef struct transposed {
-    dnn_call forward, data, weights;
-    dnn_call convert, convert_back, collect; /* weights to forward and to data; gradient from weights */
-    dnn_shape plain;                         /* the float32 weights */
-    void *forward_weights, *data_weights, *weight_gradient;
-} transposed;
 
 static dnn_shape weights_shape(const nn_step *step, nn_type type, dnnl_format_tag_t order)
 {
@@ -46,25 +38,21 @@ static status describe(dnn_call *call, const nn_step *step, dnnl_prop_kind_t kin
     return dnn_describe(call, step->context, &wanted);
 }
 
-static status own(nn_step *step, dnn_layout layout, void **memory)
-{
-    return conv_own(step, dnnl_memory_desc_get_size(layout), memory);
-}
-
 static size_t accumulated_bytes(const nn_step *step)
 {
     return step->wants[0] ? conv_align(tensor_bytes(&step->in[0])) : 0;
 }
 
-static status describe_backward(nn_step *step, transposed *state, const dnn_call *hint)
+static status describe_backward(nn_step *step, dnn_conv_state *state, const dnn_call *hint)
 {
     status s = OK;
     if (step->wants[0]) {
         s = describe(&state->data, step, dnnl_forward_training, step->compute, NULL);
-        if (s == OK) s = own(step, dnn_query(&state->data, dnnl_query_weights_md), &state->data_weights);
+        if (s == OK) s = dnn_conv_own(step, dnn_query(&state->data, dnnl_query_weights_md), &state->data_weights);
     }
     if (s == OK) s = describe(&state->weights, step, dnnl_backward_weights, NN_FLOAT32, hint);
-    if (s == OK) s = own(step, dnn_query(&state->weights, dnnl_query_diff_weights_md), &state->weight_gradient);
+    if (s == OK)
+        s = dnn_conv_own(step, dnn_query(&state->weights, dnnl_query_diff_weights_md), &state->weight_gradient);
     if (s != OK) return s;
     const size_t data = dnn_scratch_bytes(&state->data), weights = dnn_scratch_bytes(&state->weights);
     /* gradient of the input before accumulation, oneDNN's own */
@@ -72,7 +60,7 @@ static status describe_backward(nn_step *step, transposed *state, const dnn_call
     return OK;
 }
 
-static status bind_forward(nn_step *step, transposed *state)
+static status bind_forward(nn_step *step, dnn_conv_state *state)
 {
     const dnn_context *context = step->context;
     dnn_call *call = &state->forward;
@@ -90,7 +78,7 @@ static void *library_place(const nn_step *step)
     return (char *)step->backward_space + accumulated_bytes(step);
 }
 
-static status bind_data(nn_step *step, transposed *state)
+static status bind_data(nn_step *step, dnn_conv_state *state)
 {
     const dnn_context *context = step->context;
     dnn_call *call = &state->data;
@@ -103,7 +91,7 @@ static status bind_data(nn_step *step, transposed *state)
     return s == OK ? dnn_make(call, library_place(step), context) : s;
 }
 
-static status bind_weights(nn_step *step, transposed *state)
+static status bind_weights(nn_step *step, dnn_conv_state *state)
 {
     const dnn_context *context = step->context;
     dnn_call *call = &state->weights;
@@ -113,51 +101,27 @@ static status bind_weights(nn_step *step, transposed *state)
     if (s == OK) s = dnn_argument_of(call, context, DNNL_ARG_DIFF_DST, &x, step->in[0].data);
     if (s == OK) s = dnn_argument(call, context, DNNL_ARG_DIFF_WEIGHTS, dw, state->weight_gradient);
     if (s == OK) s = dnn_make(call, library_place(step), context);
-    if (s != OK) return s;
-    return dnn_make_reorder_from(&state->collect, context, dw, state->weight_gradient, &state->plain,
-                                 step->params.weight->gradient);
+    return s == OK ? dnn_conv_collect(step, state) : s;
 }
 
 static status transposed_bind(nn_step *step)
 {
-    transposed *state = step->state;
+    dnn_conv_state *state = step->state;
     status s = bind_forward(step, state);
     if (s == OK && step->backs && step->wants[0]) s = bind_data(step, state);
     if (s == OK && step->backs) s = bind_weights(step, state);
     return s;
 }
 
-/* Makes the conversions where they are first used: oneDNN fixes the number of threads at the one in force then. */
-static status make_conversions(const nn_step *step, transposed *state)
-{
-    const dnn_context *context = step->context;
-    float *master = conv_weights(step, step->forward_space);
-    status s = dnn_make_reorder_to(&state->convert, context, &state->plain, master,
-                                   dnn_query(&state->forward, dnnl_query_weights_md), state->forward_weights);
-    if (s != OK || !state->data.primitive) return s;
-    return dnn_make_reorder_to(&state->convert_back, context, &state->plain, master,
-                               dnn_query(&state->data, dnnl_query_weights_md), state->data_weights);
-}
-
-static status transposed_refresh(nn_step *step)
-{
-    transposed *state = step->state;
-    status s = dnn_is_made(&state->convert) ? OK : make_conversions(step, state);
-    if (s != OK) return s;
-    conv_make_weights(step, step->forward_space, NULL);
-    s = dnn_run(&state->convert, step->context);
-    return s == OK && dnn_is_made(&state->convert_back) ? dnn_run(&state->convert_back, step->context) : s;
-}
-
 static status transposed_forward(nn_step *step)
 {
-    const transposed *state = step->state;
+    const dnn_conv_state *state = step->state;
     return dnn_run(&state->forward, step->context);
 }
 
 static status transposed_backward(nn_step *step)
 {
-    const transposed *state = step->state;
+    const dnn_conv_state *state = step->state;
     status s = dnn_run(&state->weights, step->context);
     if (s == OK) s = dnn_run(&state->collect, step->context);
     if (s != OK || !step->wants[0]) return s;
@@ -169,42 +133,21 @@ static status transposed_backward(nn_step *step)
     return OK;
 }
 
-static void transposed_release(nn_step *step)
-{
-    transposed *state = step->state;
-    dnn_call *calls[] = {&state->forward, &state->data,         &state->weights,
-                         &state->convert, &state->convert_back, &state->collect};
-    for (size_t i = 0; i < sizeof calls / sizeof calls[0]; i++)
-        dnn_release(calls[i]);
-    memory_free(state->forward_weights);
-    memory_free(state->data_weights);
-    memory_free(state->weight_gradient);
-    free(state);
-}
-
-static void count_flops(nn_step *step)
-{
-    const nn_tensor *x = &step->in[0];
-    const double taps = (double)step->at.kernel * step->at.kernel;
-    step->forward_flops = 2 * (double)x->n * x->h * x->w * x->c * step->out.c * taps;
-    if (step->backs) step->backward_flops = step->forward_flops * (step->wants[0] ? 2 : 1);
-}
-
 status transposed_create(nn_step *step)
 {
-    static const step_functions functions = {transposed_bind, transposed_refresh, transposed_forward,
-                                             transposed_backward, transposed_release};
-    transposed *state = calloc(1, sizeof *state);
+    static const step_functions functions = {transposed_bind, dnn_conv_refresh, transposed_forward, transposed_backward,
+                                             dnn_conv_release};
+    dnn_conv_state *state = calloc(1, sizeof *state);
     if (!state) return fail(MERLIN_NO_MEMORY, "no memory for a convolution");
     step->run = &functions;
     step->state = state;
     step->reads_in = true;
     state->plain = weights_shape(step, NN_FLOAT32, dnnl_oihw);
-    count_flops(step);
+    conv_count_flops(step);
     dnn_call hint = {0};
     status s = describe(&hint, step, dnnl_forward_training, step->compute, NULL);
     if (s == OK) s = describe(&state->forward, step, dnnl_backward_data, step->compute, &hint);
-    if (s == OK) s = own(step, dnn_query(&state->forward, dnnl_query_weights_md), &state->forward_weights);
+    if (s == OK) s = dnn_conv_own(step, dnn_query(&state->forward, dnnl_query_weights_md), &state->forward_weights);
     if (s == OK) {
         const size_t library = dnn_scratch_bytes(&state->forward), weights = conv_weights_bytes(step);
         step->forward_scratch = library > weights ? library : weights;

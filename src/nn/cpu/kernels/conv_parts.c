@@ -12,7 +12,8 @@
 void conv_count_flops(nn_step *step)
 {
     const nn_tensor *x = &step->in[0], *y = &step->out;
-    double pixels = (double)y->n * y->h * y->w;
+    /* each tap is used once for a pixel of the smaller one: of a transposed convolution that is the input */
+    const double pixels = fmin((double)x->h * x->w, (double)y->h * y->w) * y->n;
     step->forward_flops = 2 * pixels * x->c * y->c * step->at.kernel * step->at.kernel;
     if (step->backs) step->backward_flops = step->forward_flops * (step->wants[0] ? 2 : 1);
 }
