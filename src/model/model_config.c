@@ -36,7 +36,7 @@ static status read_rival(json_object *o, model_config *out)
     int rival = 0;
     status s = json_choice(o, "rival", rival_words, 2, &rival);
     if (s == OK) s = json_int(o, "cascades", 0, 2, &out->cascades);
-    out->rival = rival ? MODEL_SANG : MODEL_LI;
+    out->rival = (model_rival)(MODEL_LI + rival);
     out->input_global = true;
     out->material_decoders = out->rival == MODEL_LI ? 4 : 1;
     out->feature_sharing = out->rival == MODEL_SANG;
@@ -122,7 +122,7 @@ char *model_config_write(const model_config *c)
     char *text = NULL;
     if (c->rival) {
         int written = asprintf(&text, "{\"name\": \"%s\", \"rival\": \"%s\", \"cascades\": %d}", c->name,
-                               rival_words[c->rival == MODEL_SANG], c->cascades);
+                               rival_words[c->rival - MODEL_LI], c->cascades);
         return written < 0 ? NULL : text;
     }
     const int *w = c->widths, *gi = c->gi_widths, *e = c->encoder_blocks, *m = c->material_blocks;

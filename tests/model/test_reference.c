@@ -21,14 +21,6 @@ static const float rate = 0.01f;
 
 /* ---- inputs and parameters ---- */
 
-static void fill_disc(float *to, int radius)
-{
-    for (int i = 0; i < BATCH * SIZE * SIZE; i++) {
-        int x = 2 * (i % SIZE) + 1 - SIZE, y = 2 * (i / SIZE % SIZE) + 1 - SIZE;
-        to[i] = x * x + y * y < 4 * radius * radius ? 1 : 0;
-    }
-}
-
 typedef struct input {
     const char *name;
     int channels;
@@ -44,8 +36,8 @@ static const input images[] = {
 static void fill_inputs(nn_program *p)
 {
     float *mask = nn_input_data(p, "mask"), *loss_mask = nn_input_data(p, "loss_mask");
-    fill_disc(mask, 26);
-    if (loss_mask) fill_disc(loss_mask, 25);
+    reference_fill_disc(mask, BATCH, SIZE, 26);
+    if (loss_mask) reference_fill_disc(loss_mask, BATCH, SIZE, 25);
     for (size_t i = 0; i < sizeof images / sizeof *images; i++) {
         float *to = nn_input_data(p, images[i].name);
         size_t count = (size_t)(BATCH * SIZE * SIZE * images[i].channels);
@@ -175,21 +167,9 @@ static void compare_outputs(const session *s, double tolerance)
 {
     static const char *const names[] = {"albedo", "normal",   "roughness",    "depth",
                                         "direct", "indirect", "relit_direct", "relit_brdf"};
-    for (int k = 0; k < 8; k++) {
-        const float *found = nn_output_data(s->infer, names[k]);
-        const safetensors_tensor *t = reference_stored(s->reference, "output", names[k]);
-        assert_true((t == NULL) == (found == NULL));
-        if (!t) continue;
-        size_t channels = (size_t)t->shape[3], pixels = t->count / channels, side = SIZE / STRIDE;
-        float *kept = malloc(t->count * sizeof *kept);
-        assert_non_null(kept);
-        for (size_t i = 0; i < pixels; i++) {
-            size_t n = i / (side * side), y = i / side % side * STRIDE, x = i % side * STRIDE;
-            memcpy(kept + i * channels, found + ((n * SIZE + y) * SIZE + x) * channels, channels * sizeof *kept);
-        }
-        reference_compare(s->reference, "output", names[k], kept, tolerance);
-        free(kept);
-    }
+    for (int k = 0; k < 8; k++)
+        reference_compare_output(s->reference, "output", names[k], nn_output_data(s->infer, names[k]), SIZE, STRIDE,
+                                 tolerance);
 }
 
 static void run_variant(bool everything)

@@ -62,29 +62,12 @@ static void their_cost_is_as_published(void **state)
 static void fill_inputs(nn_program *p)
 {
     float *mask = nn_input_data(p, "mask"), *image = nn_input_data(p, "image"), *light = nn_input_data(p, "light");
-    for (int i = 0; i < SIZE * SIZE; i++) {
-        const int x = 2 * (i % SIZE) + 1 - SIZE, y = 2 * (i / SIZE) + 1 - SIZE;
-        mask[i] = x * x + y * y < 4 * 26 * 26 ? 1 : 0;
-    }
+    reference_fill_disc(mask, 1, SIZE, 26);
     reference_fill(image, "image", SIZE * SIZE * 3, 0.5, 0.5);
     for (int i = 0; i < SIZE * SIZE * 3; i++)
         image[i] *= mask[i / 3];
     if (light) reference_fill(light, "light", 3, 1, 0);
     reference_fill(nn_input_data(p, "light_position"), "light_position", 3, 0.5, 0);
-}
-
-static void compare_output(const safetensors_file *f, const char *kind, const char *name, const float *found)
-{
-    const safetensors_tensor *t = reference_stored(f, kind, name);
-    assert_true((t == NULL) == (found == NULL));
-    if (!t) return;
-    const size_t channels = (size_t)t->shape[3], side = SIZE / STRIDE;
-    float kept[3 * SIZE * SIZE / STRIDE / STRIDE];
-    for (size_t i = 0; i < side * side; i++) {
-        const size_t at = i / side * STRIDE * SIZE + i % side * STRIDE;
-        memcpy(kept + i * channels, found + at * channels, channels * sizeof *kept);
-    }
-    reference_compare(f, kind, name, kept, 1e-4); /* as test_reference's outputs */
 }
 
 static void check_outputs(model_rival which, const char *kind)
@@ -101,7 +84,8 @@ static void check_outputs(model_rival which, const char *kind)
     fill_inputs(p);
     assert_int_equal(nn_forward(p), OK);
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-        compare_output(f, kind, names[i], nn_output_data(p, names[i]));
+        reference_compare_output(f, kind, names[i], nn_output_data(p, names[i]), SIZE, STRIDE,
+                                 1e-4); /* test_reference.c */
     safetensors_close(f);
     nn_program_free(p);
     nn_params_free(params);

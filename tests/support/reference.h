@@ -92,4 +92,33 @@ static inline void reference_compare(const safetensors_file *f, const char *kind
     if (!(d <= tolerance)) fail_msg("%s.%s is off by %.3g of its size, %.3g allowed", kind, name, d, tolerance);
 }
 
+/* Fills pictures of size × size with a disc of 1. */
+static inline void reference_fill_disc(float *to, int pictures, int size, int radius)
+{
+    for (int i = 0; i < pictures * size * size; i++) {
+        const int x = 2 * (i % size) + 1 - size, y = 2 * (i / size % size) + 1 - size;
+        to[i] = x * x + y * y < 4 * radius * radius ? 1 : 0;
+    }
+}
+
+/* Compares an output of size × size pixels, of which the reference has every step-th of every step-th row; neither may
+ * have it alone. */
+static inline void reference_compare_output(const safetensors_file *f, const char *kind, const char *name,
+                                            const float *found, int size, int step, double tolerance)
+{
+    const safetensors_tensor *t = reference_stored(f, kind, name);
+    assert_true((t == NULL) == (found == NULL));
+    if (!t) return;
+    const size_t channels = (size_t)t->shape[3], pixels = t->count / channels, side = (size_t)(size / step);
+    float *kept = malloc(t->count * sizeof *kept);
+    assert_non_null(kept);
+    for (size_t i = 0; i < pixels; i++) {
+        const size_t n = i / (side * side), y = i / side % side * (size_t)step, x = i % side * (size_t)step;
+        const size_t at = (n * (size_t)size + y) * (size_t)size + x;
+        memcpy(kept + i * channels, found + at * channels, channels * sizeof *kept);
+    }
+    reference_compare(f, kind, name, kept, tolerance);
+    free(kept);
+}
+
 #endif

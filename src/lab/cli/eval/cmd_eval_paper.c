@@ -3,13 +3,12 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "command/cli.h"
 #include "command/json_line.h"
 #include "command/options.h"
-#include "command/photos.h"
 #include "lab/cli/eval/eval_commands.h"
+#include "lab/cli/eval/judge.h"
 #include "lab/eval/paper/paper_table.h"
 #include "lab/eval/paper/paper_table3.h"
 
@@ -112,9 +111,8 @@ static status parse3(int argc, char **argv, request3 *r)
     r->options.weights = (const char *const *)argv;
     r->options.count = argc;
     if (!r->options.stereo.data) return fail(MERLIN_WRONG_USE, "--data DIR is missing");
-    if (r->method && strcmp(r->method, "universal") != 0)
-        return fail(MERLIN_WRONG_USE, "--method adds \"universal\", not \"%s\"", r->method);
-    return argc > 0 ? OK : fail(MERLIN_WRONG_USE, "name weights to relight with");
+    s = judge_check(r->method);
+    return s != OK || argc > 0 ? s : fail(MERLIN_WRONG_USE, "name weights to relight with");
 }
 
 static status announce3(const request3 *r, const paper3_table *t)
@@ -130,16 +128,11 @@ int eval_table3(int argc, char **argv)
     if (parse3(argc, argv, &r) != OK) return cli_usage("eval table3", "%s", status_message());
     if (r.help) return fputs(help3, stdout) < 0;
     cli_catch_interrupts();
-    char *judge = NULL, *flash = NULL, *several = NULL;
+    judge by;
     paper3_table table;
-    status s = r.method ? photo_find_models("merlin-any", &judge, &flash) : OK;
-    if (s == OK && r.method) s = photo_find_several(NULL, &several);
-    r.options.stereo.judge = judge;
-    r.options.stereo.several = several;
+    status s = judge_find(r.method, &by, &r.options.stereo);
     if (s == OK) s = paper3_table_run(&r.options, &table);
-    free(judge);
-    free(flash);
-    free(several);
+    judge_free(&by);
     if (s != OK) return cli_fail("eval table3", s);
     s = announce3(&r, &table);
     paper3_table_free(&table);

@@ -3,13 +3,13 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "command/cli.h"
 #include "command/json_line.h"
 #include "command/options.h"
 #include "command/photos.h"
 #include "lab/cli/eval/eval_commands.h"
+#include "lab/cli/eval/judge.h"
 #include "lab/eval/stereo/stereo_table.h"
 
 static const char help[] =
@@ -54,9 +54,8 @@ static status parse(int *argc, char ***argv, request *r)
     status s = cli_read_options(argc, argv, options);
     if (s != OK || r->help) return s;
     if (*argc > 0) return fail(MERLIN_WRONG_USE, "unexpected argument \"%s\"", (*argv)[0]);
-    if (r->method && strcmp(r->method, "universal") != 0)
-        return fail(MERLIN_WRONG_USE, "--method adds \"universal\", not \"%s\"", r->method);
-    return r->options.data ? OK : fail(MERLIN_WRONG_USE, "--data DIR is missing");
+    s = judge_check(r->method);
+    return s != OK || r->options.data ? s : fail(MERLIN_WRONG_USE, "--data DIR is missing");
 }
 
 static status announce(const request *r, const stereo_table *t)
@@ -71,22 +70,18 @@ int eval_stereo(int argc, char **argv)
     request r = {.options = {.stopped = cli_interrupted}};
     if (parse(&argc, &argv, &r) != OK) return cli_usage("eval stereo", "%s", status_message());
     if (r.help) return fputs(help, stdout) < 0;
-    char *weights = NULL, *flash = NULL, *judge = NULL, *flash_judge = NULL, *several = NULL;
+    char *weights = NULL, *flash = NULL;
+    judge by = {NULL, NULL};
     status s = photo_find_models(r.model, &weights, &flash);
-    if (s == OK && r.method) s = photo_find_models("merlin-any", &judge, &flash_judge);
-    if (s == OK && r.method) s = photo_find_several(NULL, &several);
+    if (s == OK) s = judge_find(r.method, &by, &r.options);
     r.options.weights = weights;
     r.options.flash = flash;
-    r.options.judge = judge;
-    r.options.several = several;
     cli_catch_interrupts();
     stereo_table table;
     if (s == OK) s = stereo_table_run(&r.options, &table);
     free(weights);
     free(flash);
-    free(judge);
-    free(flash_judge);
-    free(several);
+    judge_free(&by);
     if (s == OK) {
         s = announce(&r, &table);
         stereo_table_free(&table);
