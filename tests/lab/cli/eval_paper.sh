@@ -34,9 +34,9 @@ refuses 1 "missing" table table2 --data "$samples" "$scratch/missing.safetensors
 
 # Table 3, relit by two (Sang's network would take a minute for 50 pictures)
 "$MERLIN_LAB" render --count 1 --seed 52 --size 64 --targets 40 --spp 1 --paths 1 --no-env --quiet -o "$scratch/near" >/dev/null
-table table3 --data "$scratch/near" "$scratch/table1-9.safetensors" "$scratch/table1-3.safetensors" --json |
+table table3 --data "$scratch/near" --draws 1 "$scratch/table1-9.safetensors" "$scratch/table1-3.safetensors" --json |
     tr -d "[:space:]" >"$scratch/report.json"
-grep -q '"table":3,"models":\[{"model":"table1-9",.*"real_images":{"error_degrees":.*{"model":"table1-3",.*"relit_images":{' \
+grep -q '"table":3,"models":\[{"model":"table1-9","draws":1,.*"real_images":{"error_degrees":.*{"model":"table1-3",.*"relit_images":{' \
     "$scratch/report.json" || complain "the JSON report of Table 3 lacks something"
 [ "$(grep -o '"real_images":{' "$scratch/report.json" | wc -l)" = 1 ] || complain "real pictures are solved for each weights"
 refuses 2 "name weights to relight with" table table3 --data "$scratch/near"

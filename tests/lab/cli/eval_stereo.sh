@@ -12,13 +12,15 @@ table() { "$MERLIN_LAB" eval stereo --quiet "$@"; }
 succeeds '^single image' table --data near --count 1 --figure sheet.png
 [[ -s sheet.png ]] || complain "no figure"
 grep -q '^  real images' stdout || complain "no row of real images: $(cat stdout)"
-succeeds '"real_images_uncalibrated"' table --data near --count 1 --json
+succeeds '"real_images_uncalibrated"' table --data near --count 1 --draws 1 --json
+grep -q '"draws":[[:space:]]*1,' stdout || complain "not one draw: $(cat stdout)"
 succeeds '^usage' table --help
 
 refuses 2 'data DIR is missing' table
 refuses 2 'unexpected argument' table --data near more
 refuses 2 'unknown option' table --data near --nonsense
 refuses 2 '--count wants' table --data near --count none
+refuses 2 '--draws wants' table --data near --draws 6
 refuses 1 'missing' table --data missing
 mkdir empty
 refuses 1 'holds no samples' table --data empty

@@ -11,6 +11,7 @@
 #include "lab/cli/eval/judge.h"
 #include "lab/eval/paper/paper_table.h"
 #include "lab/eval/paper/paper_table3.h"
+#include "photo_stereo/subsets.h"
 
 static const char help[] =
     "usage: merlin-lab eval table1 --data DIR WEIGHTS... [options]\n"
@@ -84,6 +85,7 @@ static const char help3[] =
     "  --data DIR         samples with many targets, or captures (merlin-lab eval stereo --help)\n"
     "  --method universal a judge more: a network that sees the pictures of a draw together, lights unknown\n"
     "  --count N          only the first N objects\n"
+    "  --draws N          only the first N of the five draws\n"
     "      --json         report on standard output as JSON\n"
     "  -t, --threads N    how many threads work (default: one a processor)\n"
     "  -q, --quiet        no progress\n"
@@ -101,6 +103,7 @@ static status parse3(int argc, char **argv, request3 *r)
         {"data", .text = &r->options.stereo.data},
         {"method", .text = &r->method},
         {"count", .count = &r->options.stereo.count, .low = 1, .high = 1000000},
+        {"draws", .integer = &r->options.stereo.draws, .low = 1, .high = SUBSETS},
         {"json", .flag = &r->json},
         {"quiet", 'q', .flag = &r->options.stereo.quiet},
         {"help", 'h', .flag = &r->help},

@@ -11,6 +11,7 @@
 #include "lab/cli/eval/eval_commands.h"
 #include "lab/cli/eval/judge.h"
 #include "lab/eval/stereo/stereo_table.h"
+#include "photo_stereo/subsets.h"
 
 static const char help[] =
     "usage: merlin-lab eval stereo --data DIR [options]\n\n"
@@ -24,6 +25,7 @@ static const char help[] =
     "  --method universal two rows more: by a network that sees the pictures of a draw together, lights unknown, as\n"
     "                     merlin stereo does (merlin-any and merlin-several)\n"
     "  --count N          only the first N objects\n"
+    "  --draws N          only the first N of the five draws\n"
     "  --figure F.png     a picture of the normals and where they are off\n"
     "      --json         report on standard output as JSON\n"
     "  -t, --threads N    how many threads work (default: one a processor)\n"
@@ -45,6 +47,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"model", .text = &r->model},
         {"method", .text = &r->method},
         {"count", .count = &r->options.count, .low = 1, .high = 100000000},
+        {"draws", .integer = &r->options.draws, .low = 1, .high = SUBSETS},
         {"figure", .picture = &r->options.figure},
         {"json", .flag = &r->json},
         {"quiet", 'q', .flag = &r->options.quiet},

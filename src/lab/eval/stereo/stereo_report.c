@@ -79,7 +79,7 @@ static void print_comparison(const stereo_table *t, stereo_row row, const char *
 void stereo_table_print(const stereo_table *t, FILE *stream)
 {
     fprintf(stream, "%s, mean angular error in degrees over %zu objects; %d pictures drawn %d times\n\n", t->model,
-            t->count, SUBSET_PICTURES, SUBSETS);
+            t->count, SUBSET_PICTURES, t->draws);
     stereo_table_print_heading(t, stream);
     stereo_table_print_row(t, STEREO_SINGLE, "single image", stream);
     fputs("calibrated\n", stream);
@@ -136,7 +136,7 @@ static cJSON *object_json(const stereo_column *column)
 void stereo_table_put(const stereo_table *t, cJSON *o)
 {
     json_put_text(o, "model", t->model);
-    json_put_number(o, "draws", SUBSETS);
+    json_put_number(o, "draws", t->draws);
     json_put_number(o, "pictures_a_draw", SUBSET_PICTURES);
     cJSON *mean = json_put_object(o, "mean");
     for (int row = 0; row < STEREO_ROWS; row++)

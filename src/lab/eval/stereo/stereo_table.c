@@ -104,12 +104,18 @@ static status solve_subset(const evaluation *e, subject *s, stereo_row row, cons
     return OK;
 }
 
+static int count_draws(const stereo_options *o)
+{
+    return o->draws ? o->draws : SUBSETS;
+}
+
 /* A subset that a solver can make nothing of is a result too. */
 static status solve_subsets(evaluation *e, subject *s, stereo_row row, const merlin_capture *from)
 {
     stereo_score *score = &s->column->row[row];
     double sum = 0, squares = 0, angle = 0, count = 0;
-    for (int d = 0; d < subset_count(from); d++) {
+    const int draws = subset_count(from) < count_draws(e->options) ? subset_count(from) : count_draws(e->options);
+    for (int d = 0; d < draws; d++) {
         if (e->options->stopped && e->options->stopped()) return fail(MERLIN_STOPPED, "stopped");
         status result = solve_subset(e, s, row, from, d, &angle);
         if (result != OK && result != MERLIN_BAD_INPUT) return fail_in(result, "%s", s->object.name);
@@ -147,7 +153,8 @@ static status evaluate_subject(evaluation *e, subject *s, const char *path)
 static status evaluate_all(evaluation *e, char **path, stereo_table *out)
 {
     status s = OK;
-    const size_t solutions = (size_t)((e->judge ? 6 : 4) / (e->options->relit_only ? 2 : 1)) * SUBSETS;
+    const int rows = (e->judge ? 6 : 4) / (e->options->relit_only ? 2 : 1);
+    const size_t solutions = (size_t)(rows * out->draws);
     progress_begin(&e->bar, "photometric stereo", "solutions", 0, out->count * solutions, e->options->quiet);
     for (size_t i = 0; i < out->count && s == OK; i++) {
         subject one = {.column = &out->object[i]};
@@ -179,7 +186,7 @@ static status run_listed(const stereo_options *options, char **path, stereo_tabl
 
 status stereo_table_run(const stereo_options *options, stereo_table *out)
 {
-    *out = (stereo_table){0};
+    *out = (stereo_table){.draws = count_draws(options)};
     double began = clock_seconds();
     char **path;
     size_t count;

@@ -40,6 +40,7 @@ typedef struct stereo_table {
     char model[64];
     stereo_column *object;
     size_t count;
+    int draws; /* of the pictures for each row */
     double seconds;
 } stereo_table;
 
@@ -49,6 +50,7 @@ typedef struct stereo_options {
                                   * judge NULL: without these rows */
     bool relit_only;             /* without the rows of real pictures, which are the same for all weights */
     size_t count;                /* the first so many objects; 0: all */
+    int draws;                   /* the first so many of the SUBSETS draws; 0: all */
     const char *figure;          /* PNG of normals and where they are off, a line an object; NULL: none */
     bool quiet;
     int (*stopped)(void); /* asked between solutions; NULL: never */
