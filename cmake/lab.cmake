@@ -9,7 +9,8 @@ merlin_module(lab/scene PARTS . shape material object
   LINK merlin_mesh merlin_image merlin_optics)
 merlin_module(lab/render LINK merlin_scene embree)
 target_compile_definitions(merlin_render PRIVATE MERLIN_EMBREE=${embree_VERSION_MAJOR})
-merlin_module(lab/train LINK merlin_model merlin_render)
+merlin_module(lab/train PARTS config samples .
+  LINK merlin_model merlin_render)
 merlin_module(lab/eval PARTS metrics samples tables stereo paper
   LINK merlin_train merlin_photo_stereo)
 merlin_module(lab/onnx LINK merlin_model)

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "lab/train/train_config.h"
+#include "lab/train/config/train_config.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 

@@ -5,6 +5,7 @@
 
 #include "model/blocks.h"
 #include "model/model_network.h"
+#include "model/nfps/nfps.h"
 #include "model/rivals/rival.h"
 #include "model/rivals/rival_li.h"
 #include "model/sh_bands.h"
@@ -29,7 +30,8 @@ const char *const model_losses[MODEL_LOSSES] = {"albedo",
                                                 "lamp",
                                                 "lamp_distance",
                                                 "lamp_light",
-                                                "visibility"};
+                                                "visibility",
+                                                "first_normal"};
 
 const char *const model_features[MODEL_FEATURES + 1] = {
     "encoder_features0",  "encoder_features1",  "encoder_features2",  "encoder_features3",  "encoder_features4",
@@ -326,7 +328,9 @@ status model_build(const model_config *config, model_part part, nn_graph **out)
     nn_graph *g = nn_graph_new();
     if (!g) return fail(MERLIN_NO_MEMORY, "out of memory while building model \"%s\"", config->name);
     status s = OK;
-    if (part == MODEL_INDIRECT) {
+    if (config->nfps_width) {
+        nfps_build(g, config, part);
+    } else if (part == MODEL_INDIRECT) {
         s = build_indirect(g, config);
     } else if (part == MODEL_RELIGHT) {
         s = build_relighting(g, config);

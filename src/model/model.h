@@ -41,6 +41,9 @@
  * "visibility", and the truth and weights of the latter two; all others are one for each object. With one photograph
  * the network is that of "lighting": "any" until it is trained.
  *
+ * With "nfps_width" it is another network altogether, which makes normals of pictures under known lights
+ * (model/nfps/nfps.h).
+ *
  * With "only_lights" there is no output but "lights", and there are no losses but those of it. */
 #ifndef MERLIN_MODEL_MODEL_H
 #define MERLIN_MODEL_MODEL_H
@@ -50,7 +53,7 @@
 #include "model/model_part.h"
 #include "nn/nn.h"
 
-enum { MODEL_SIZE_MULTIPLE = 32, MODEL_LOSSES = 18 };
+enum { MODEL_SIZE_MULTIPLE = 32, MODEL_LOSSES = 19 };
 
 /* Names of the losses; a variant may lack some (nn_loss: NAN). New ones are appended, so that columns of older curves
  * keep their meaning. */

@@ -8,7 +8,7 @@
 #include "base/text/json_file.h"
 
 /* Limits. A layer's input is at most three times a width: shared features, upsampled features and the skip. */
-enum { MAX_WIDTH = 640, MAX_BLOCKS = 9 };
+enum { MAX_WIDTH = 640, MAX_BLOCKS = 9, MAX_NFPS_WIDTH = 128 };
 
 static const char *const relight_words[] = {"network", "brdf"};
 static const char *const lighting_words[] = {"point", "both", "any"};
@@ -46,6 +46,14 @@ static status read_rival(json_object *o, model_config *out)
     return s;
 }
 
+/* Reads the network of near lights. */
+static status read_nfps(json_object *o, const char *where, model_config *out)
+{
+    status s = json_int(o, "nfps_width", 8, MAX_NFPS_WIDTH, &out->nfps_width);
+    if (s == OK && out->nfps_width % 8) s = fail(MERLIN_BAD_INPUT, "%s: \"nfps_width\" must be a multiple of 8", where);
+    return s;
+}
+
 static status read_keys(json_object *o, const char *where, model_config *out)
 {
     int relight = 0, lighting = 0;
@@ -53,6 +61,10 @@ static status read_keys(json_object *o, const char *where, model_config *out)
     if (s == OK) s = check_name(out->name, where);
     if (s == OK && json_has(o, "rival")) {
         s = read_rival(o, out);
+        return s == OK ? json_finish(o) : s;
+    }
+    if (s == OK && json_has(o, "nfps_width")) {
+        s = read_nfps(o, where, out);
         return s == OK ? json_finish(o) : s;
     }
     if (s == OK) s = json_bool(o, "input_global", &out->input_global);
@@ -123,6 +135,10 @@ char *model_config_write(const model_config *c)
     if (c->rival) {
         int written = asprintf(&text, "{\"name\": \"%s\", \"rival\": \"%s\", \"cascades\": %d}", c->name,
                                rival_words[c->rival - MODEL_LI], c->cascades);
+        return written < 0 ? NULL : text;
+    }
+    if (c->nfps_width) {
+        int written = asprintf(&text, "{\"name\": \"%s\", \"nfps_width\": %d}", c->name, c->nfps_width);
         return written < 0 ? NULL : text;
     }
     const int *w = c->widths, *gi = c->gi_widths, *e = c->encoder_blocks, *m = c->material_blocks;

@@ -5,8 +5,8 @@
 #define MERLIN_LAB_TRAIN_CHECKPOINT_H
 
 #include "lab/train/average.h"
+#include "lab/train/config/train_config.h"
 #include "lab/train/curves.h"
-#include "lab/train/train_config.h"
 
 typedef struct train_state {
     int64_t step;

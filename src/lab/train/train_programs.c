@@ -2,7 +2,7 @@
 #include "lab/train/train_programs.h"
 
 #include "base/rng.h"
-#include "lab/train/prepare.h"
+#include "lab/train/config/streams.h"
 
 static status add(const nn_graph *g, nn_params *params, const nn_options *options, const train_source *source,
                   train_programs *out)

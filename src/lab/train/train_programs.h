@@ -4,7 +4,7 @@
 #ifndef MERLIN_LAB_TRAIN_TRAIN_PROGRAMS_H
 #define MERLIN_LAB_TRAIN_TRAIN_PROGRAMS_H
 
-#include "lab/train/loader.h"
+#include "lab/train/samples/loader.h"
 #include "nn/nn.h"
 
 enum { TRAIN_PROGRAMS = 16 };

@@ -3,7 +3,7 @@
 #ifndef MERLIN_LAB_TRAIN_TRAIN_RATES_H
 #define MERLIN_LAB_TRAIN_TRAIN_RATES_H
 
-#include "lab/train/train_config.h"
+#include "lab/train/config/train_config.h"
 #include "nn/nn.h"
 
 /* Applies "encoder_rate_scale" to the encoder and "single_rate_scale" to what the model of one photograph has, too;

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "lab/train/dataset.h"
-#include "lab/train/prepare.h"
+#include "lab/train/samples/dataset.h"
+#include "lab/train/samples/prepare.h"
 #include "optics/orientation.h"
 
 /* last, as cmocka defines a macro named fail */

@@ -3,7 +3,7 @@
 #ifndef MERLIN_TESTS_PREPARED_H
 #define MERLIN_TESTS_PREPARED_H
 
-#include "lab/train/dataset.h"
+#include "lab/train/samples/dataset.h"
 #include "scratch.h"
 #include "synthetic.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Photographs under mixtures of light: sums of rendered images, and their ground truth. */
-#include "lab/train/mixture.h"
+#include "lab/train/samples/mixture.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-#include "lab/train/motion.h"
+#include "lab/train/samples/motion.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "lab/train/prepare.h"
+#include "lab/train/samples/prepare.h"
 
 /* last, as cmocka defines a macro named fail */
 #include <setjmp.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <stdlib.h>
 
-#include "lab/train/schedule.h"
+#include "lab/train/config/schedule.h"
 
 /* last, as cmocka defines a macro named fail */
 #include <setjmp.h>

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "lab/train/train_config.h"
+#include "lab/train/config/train_config.h"
 #include "nn/device.h"
 
 /* last, as cmocka defines a macro named fail */

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "lab/train/train_config.h"
+#include "lab/train/config/train_config.h"
 
 /* last, as cmocka defines a macro named fail */
 #include <setjmp.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "lab/train/prepare.h"
+#include "lab/train/samples/prepare.h"
 
 #include <math.h>
 #include <stdlib.h>

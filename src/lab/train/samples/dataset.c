@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "lab/train/dataset.h"
+#include "lab/train/samples/dataset.h"
 
 #include <math.h>
 #include <stdatomic.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "lab/train/train_config.h"
+#include "lab/train/config/train_config.h"
 
 #include <limits.h>
 #include <stddef.h>

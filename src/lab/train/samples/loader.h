@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* Data loader: fills a training program's inputs with one batch, preparing samples in parallel. */
-#ifndef MERLIN_LAB_TRAIN_LOADER_H
-#define MERLIN_LAB_TRAIN_LOADER_H
+#ifndef MERLIN_LAB_TRAIN_SAMPLES_LOADER_H
+#define MERLIN_LAB_TRAIN_SAMPLES_LOADER_H
 
-#include "lab/train/dataset.h"
-#include "lab/train/schedule.h"
-#include "lab/train/train_config.h"
+#include "lab/train/config/schedule.h"
+#include "lab/train/config/train_config.h"
+#include "lab/train/samples/dataset.h"
 
 typedef struct train_loader train_loader;
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Configuration of `merlin-lab train`: {"model": {...}, "training": {...}}, one file per training stage in
  * configs/runs. */
-#ifndef MERLIN_LAB_TRAIN_TRAIN_CONFIG_H
-#define MERLIN_LAB_TRAIN_TRAIN_CONFIG_H
+#ifndef MERLIN_LAB_TRAIN_CONFIG_TRAIN_CONFIG_H
+#define MERLIN_LAB_TRAIN_CONFIG_TRAIN_CONFIG_H
 
 #include "model/model.h"
 
@@ -22,7 +22,7 @@ typedef struct train_config {
     double colour_jitter;   /* the same for each channel on its own */
     /* Optional faults of photographs, 0 by default: */
     double camera_turn;     /* largest pan, tilt and roll of the camera, degrees each */
-    double distance_jitter; /* half-width of the uniform logarithm of distance and size (train/motion.h) */
+    double distance_jitter; /* half-width of the uniform logarithm of distance and size (train/samples/motion.h) */
     double background_leak; /* share of photographs with a background, which shows at the outline */
     double outline_error;   /* share whose mask is dilated or eroded by a pixel */
     double jpeg;            /* share compressed as JPEG */

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Camera simulation for training: from radiance to the encoded picture that the network sees, with the faults of
  * cameras and of cut-out masks. All random numbers come from the generators that are passed in. */
-#ifndef MERLIN_LAB_TRAIN_TRAIN_CAMERA_H
-#define MERLIN_LAB_TRAIN_TRAIN_CAMERA_H
+#ifndef MERLIN_LAB_TRAIN_SAMPLES_TRAIN_CAMERA_H
+#define MERLIN_LAB_TRAIN_SAMPLES_TRAIN_CAMERA_H
 
 #include "base/rng.h"
 #include "image/write/jpeg.h"
-#include "lab/train/dataset.h"
-#include "lab/train/train_config.h"
+#include "lab/train/config/train_config.h"
+#include "lab/train/samples/dataset.h"
 
 /* Faults of a photograph; train_camera_perfect for none. */
 typedef struct train_camera {

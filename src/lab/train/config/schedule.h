@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Order of the samples and schedule of the learning rate. Both depend on the presentation's number alone, so that a
  * resumed run continues as if it had not been stopped. */
-#ifndef MERLIN_LAB_TRAIN_SCHEDULE_H
-#define MERLIN_LAB_TRAIN_SCHEDULE_H
+#ifndef MERLIN_LAB_TRAIN_CONFIG_SCHEDULE_H
+#define MERLIN_LAB_TRAIN_CONFIG_SCHEDULE_H
 
 #include <stdint.h>
 
-#include "lab/train/train_config.h"
+#include "lab/train/config/train_config.h"
 
 /* The order of samples: every epoch has its own permutation of 0 .. count-1. */
 typedef struct train_order {

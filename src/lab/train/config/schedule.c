@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-#include "lab/train/schedule.h"
+#include "lab/train/config/schedule.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #include "base/rng.h"
-#include "lab/train/prepare.h"
+#include "lab/train/config/streams.h"
 
 status train_order_new(train_order *o, uint64_t seed, size_t count)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "lab/train/motion.h"
+#include "lab/train/samples/motion.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -10,8 +10,8 @@
  *
  * Samples are files in the order of their names. Only pixels inside the object's outline are kept, as the half floats
  * of the file, so that a sample from memory equals one from disk bit for bit. */
-#ifndef MERLIN_LAB_TRAIN_DATASET_H
-#define MERLIN_LAB_TRAIN_DATASET_H
+#ifndef MERLIN_LAB_TRAIN_SAMPLES_DATASET_H
+#define MERLIN_LAB_TRAIN_SAMPLES_DATASET_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -10,14 +10,14 @@
  *     train_motion m = train_motion_draw(config, &rng);
  *     if (train_motion_moves(&m)) status s = train_move(&view, &m);      between train_dataset_get and train_prepare
  */
-#ifndef MERLIN_LAB_TRAIN_MOTION_H
-#define MERLIN_LAB_TRAIN_MOTION_H
+#ifndef MERLIN_LAB_TRAIN_SAMPLES_MOTION_H
+#define MERLIN_LAB_TRAIN_SAMPLES_MOTION_H
 
 #include <stdbool.h>
 
 #include "base/rng.h"
-#include "lab/train/dataset.h"
-#include "lab/train/train_config.h"
+#include "lab/train/config/train_config.h"
+#include "lab/train/samples/dataset.h"
 
 typedef struct train_motion {
     bool turned;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "lab/train/mixture.h"
+#include "lab/train/samples/mixture.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-#include "lab/train/loader.h"
+#include "lab/train/samples/loader.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/parallel.h"
-#include "lab/train/mixture.h"
-#include "lab/train/motion.h"
-#include "lab/train/prepare.h"
+#include "lab/train/samples/mixture.h"
+#include "lab/train/samples/motion.h"
+#include "lab/train/samples/prepare.h"
 #include "optics/orientation.h"
 
 enum { POINT_BUFFERS = 12, BOTH_BUFFERS = 15, BUFFERS = 24 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "lab/train/train_camera.h"
+#include "lab/train/samples/train_camera.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,28 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* Prepares a sample for one presentation to the network: masks, the photograph with a camera's faults, the target light
  * and its image. All random numbers depend on (seed, presentation) alone. */
-#ifndef MERLIN_LAB_TRAIN_PREPARE_H
-#define MERLIN_LAB_TRAIN_PREPARE_H
+#ifndef MERLIN_LAB_TRAIN_SAMPLES_PREPARE_H
+#define MERLIN_LAB_TRAIN_SAMPLES_PREPARE_H
 
 #include "base/rng.h"
 #include "base/vec.h"
-#include "lab/train/dataset.h"
-#include "lab/train/train_camera.h"
-#include "lab/train/train_config.h"
-
-/* Random streams for rng_at. */
-enum {
-    TRAIN_STREAM_ORDER = 101,
-    TRAIN_STREAM_PRESENTATION = 102,
-    TRAIN_STREAM_VALIDATION = 103,
-    TRAIN_STREAM_ENVIRONMENT = 104,
-    TRAIN_STREAM_MOTION = 105,
-    TRAIN_STREAM_FAULTS = 106,
-    TRAIN_STREAM_MIXTURE = 107,
-    TRAIN_STREAM_PICTURES = 108,
-    TRAIN_STREAM_HAND = 109,
-    TRAIN_STREAM_CAPTURE = 110
-};
+#include "lab/train/config/streams.h"
+#include "lab/train/config/train_config.h"
+#include "lab/train/samples/dataset.h"
+#include "lab/train/samples/train_camera.h"
 
 /* The light of a presentation, apart from the flash. */
 typedef struct train_lighting {

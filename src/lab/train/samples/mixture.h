@@ -7,10 +7,10 @@
  *     status s = train_prepare_any(&view, &m, &lens, target, &rng);      after train_dataset_get
  *
  * The light that the network has to predict is stored beside the maps: see model.h, "lighting": "any". */
-#ifndef MERLIN_LAB_TRAIN_MIXTURE_H
-#define MERLIN_LAB_TRAIN_MIXTURE_H
+#ifndef MERLIN_LAB_TRAIN_SAMPLES_MIXTURE_H
+#define MERLIN_LAB_TRAIN_SAMPLES_MIXTURE_H
 
-#include "lab/train/prepare.h"
+#include "lab/train/samples/prepare.h"
 
 /* Kinds of mixtures. A third of the photographs shows only a flash, as bright as in the samples; a sixth only the
  * surroundings; the rest any of them and up to two lamps, exposed as cameras do. */
