@@ -24,9 +24,10 @@ status near_capture_new(const img *mask, const img *depth, float field_of_view, 
     return s;
 }
 
-status near_capture_add(merlin_capture *c, const img *picture, vec3 light)
+status near_capture_add(merlin_capture *c, const img *picture, const merlin_light *light)
 {
-    float power = (float)LIGHT_POWER / (NEAR_CAPTURE_WHITE * (float)PI);
-    return pst_capture_add(
-        c, picture, &(merlin_light){.position = {light.x, light.y, light.z}, .intensity = {power, power, power}});
+    merlin_light with = *light;
+    for (int k = 0; k < 3; k++)
+        with.intensity[k] = (float)LIGHT_POWER / (NEAR_CAPTURE_WHITE * (float)PI);
+    return pst_capture_add(c, picture, &with);
 }

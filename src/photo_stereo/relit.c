@@ -25,7 +25,8 @@ static status relight_all(network *n, const relighter *st, int (*stop)(void), me
         img picture = {0};
         const lamp light = lamp_at(light_at(i));
         s = relighter_render(n, st, &light, 1, &picture);
-        if (s == OK) s = near_capture_add(c, &picture, light.at);
+        if (s == OK)
+            s = near_capture_add(c, &picture, &(merlin_light){.position = {light.at.x, light.at.y, light.at.z}});
         img_free(&picture);
     }
     return s;

@@ -33,6 +33,7 @@ static const char help[] =
     "  --material-dir D   photographed materials (albedo, normal, roughness maps that tile) on most objects\n"
     "  --no-env           no environment image\n"
     "  --targets K        also K images under random lights in front, with cast shadows\n"
+    "  --leds K           also K images under LEDs with random lobes about the camera, stored after the targets\n"
     "  --lamps K          also K images under random lamps, near and far, in front and beside, points and discs\n"
     "  --lamp-angles A,.. these lamps instead: points as far as the camera, so many degrees from the line to it\n"
     "  --bounces          also keep bounce 2 and bounce 3 apart\n"
@@ -124,6 +125,7 @@ static status read_options(int *argc, char ***argv, request *r)
         {"material-dir", .text = &o->material_folder},
         {"no-env", .flag = &r->no_environment},
         {"targets", .integer = &o->image.targets, .low = 0, .high = SAMPLE_MAX_TARGETS},
+        {"leds", .integer = &o->image.leds, .low = 0, .high = SAMPLE_MAX_TARGETS},
         {"lamps", .integer = &o->image.lamps, .low = 0, .high = SAMPLE_MAX_LAMPS},
         {"lamp-angles", .take = take_angles, .into = o},
         {"bounces", .flag = &o->image.bounces},

@@ -82,7 +82,7 @@ static status make_object(const run *r, uint64_t index, float fov, scene_object 
 static double expected_rays(const render_options *o)
 {
     const image_settings *m = &o->image;
-    double layers = 1 + m->targets + m->lamps + o->environment;
+    double layers = 1 + m->targets + m->leds + m->lamps + o->environment;
     return (double)m->size * m->size * (m->strata + 0.5 * m->paths * layers);
 }
 
@@ -171,7 +171,8 @@ static void body(void *context, size_t i)
 static void describe_more(const render_options *o, char *out, size_t size)
 {
     int length = 0;
-    if (o->image.lamps) length += snprintf(out, size, "lamps %d\n", o->image.lamps);
+    if (o->image.leds) length += snprintf(out, size, "leds %d\n", o->image.leds);
+    if (o->image.lamps) length += snprintf(out + length, size - (size_t)length, "lamps %d\n", o->image.lamps);
     for (int i = 0; i < o->image.lamp_angles; i++)
         length += snprintf(out + length, size - (size_t)length, "lamp at %g\n", (double)o->image.lamp_angle[i]);
     if (o->widest_fov > 0)
@@ -295,6 +296,9 @@ static status check_options(const render_options *o)
     if (m->paths < 1) return fail(MERLIN_WRONG_USE, "at least one path a pixel is needed");
     if (m->targets < 0 || m->targets > SAMPLE_MAX_TARGETS)
         return fail(MERLIN_WRONG_USE, "%d targets: at most %d", m->targets, SAMPLE_MAX_TARGETS);
+    if (m->leds < 0 || m->leds > SAMPLE_MAX_TARGETS - m->targets)
+        return fail(MERLIN_WRONG_USE, "%d targets and %d LEDs: at most %d together", m->targets, m->leds,
+                    SAMPLE_MAX_TARGETS);
     return OK;
 }
 

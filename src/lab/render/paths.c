@@ -5,6 +5,7 @@
 
 #include "base/number.h"
 #include "optics/brdf.h"
+#include "optics/led.h"
 
 static const vec3 black = {0, 0, 0};
 
@@ -126,6 +127,15 @@ ALWAYS_INLINE void shade_lanes(const shaded *s, real power, bool diffuse_only, l
     }
 }
 
+/* Dims the light of an LED on points beside its axis: a loop of its own, as a power does not vectorize. */
+static void dim_beside_axis(const point_light *light, const shaded *s, int count, lanes *lit)
+{
+    for (int i = 0; i < count; i++) {
+        vec3 l = vec3_normalize(vec3_sub(lanes_at(&s->light, i), lanes_at(&s->position, i)));
+        lanes_put(lit, i, vec3_scale(lanes_at(lit, i), led_share(light->axis, light->lobe, l)));
+    }
+}
+
 /* Computes the light of one part of a lamp on up to LANES points, without shadows. */
 static void shade_part(const trace_scene *scene, const scene_surface *at, const vec3 *view, int count,
                        const point_light *light, int part, shaded *s, lanes *lit)
@@ -136,6 +146,7 @@ static void shade_part(const trace_scene *scene, const scene_surface *at, const 
         shade_lanes(s, power, true, lit);
     else
         shade_lanes(s, power, false, lit);
+    if (light->lobe > 0) dim_beside_axis(light, s, count, lit);
 }
 
 /* Sets the light to zero for points in shadow. */

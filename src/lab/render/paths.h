@@ -18,12 +18,14 @@
  * environment at the first surface is not cut: a lamp's highlight consists of brighter paths. */
 #define PATH_CLAMP ((real)4)
 
-/* A lamp: a point, or a disc that is tested for shadows in parts. */
+/* A lamp: a point, or a disc that is tested for shadows in parts; either may be an LED. */
 typedef struct point_light {
     vec3 position;
-    real power;
+    real power;     /* Φ; of an LED, on its axis */
     bool at_eye;    /* a flash: everything the camera sees is lit, so that no shadow rays are needed */
     vec3 across[2]; /* from the middle of a disc to its edge, in two perpendicular directions; both zero for a point */
+    vec3 axis;      /* of an LED: unit; else zero */
+    real lobe;      /* of an LED: exponent (optics/led.h) */
 } point_light;
 
 /* Source of a path's numbers: the sequence at its first surfaces, where they matter most, and random numbers after. */

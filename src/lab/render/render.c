@@ -8,6 +8,7 @@
 #include "lab/render/layer_filter.h"
 #include "lab/render/paths.h"
 #include "lab/render/sample_lamps.h"
+#include "lab/render/sample_targets.h"
 #include "lab/render/streams.h"
 #include "lab/render/visibility.h"
 #include "optics/light.h"
@@ -44,7 +45,7 @@ typedef struct renderer {
     const environment *env;
     visibility *visibility;
     point_light flash, lights[SAMPLE_MAX_TARGETS], lamps[SAMPLE_MAX_LAMPS];
-    layer_source indirect, target, lamp, surroundings;
+    layer_source indirect, target, led, lamp, surroundings;
     strip strip;
     sample *out;
 } renderer;
@@ -203,9 +204,10 @@ static void render_strip(renderer *r, int first, int y)
         store_maps(r, &r->strip.pixel[i]);
     store_direct(r, &r->flash, &out->direct);
     store_indirect(r, &r->flash, &r->indirect, &out->indirect, r->settings->bounces ? bounces : NULL);
-    for (int t = 0; t < r->settings->targets; t++) {
+    for (int t = 0; t < out->target_count; t++) {
+        layer_source *layer = t < r->settings->targets ? &r->target : &r->led;
         store_direct(r, &r->lights[t], &out->targets[t].direct);
-        store_indirect(r, &r->lights[t], &r->target, &out->targets[t].indirect, NULL);
+        store_indirect(r, &r->lights[t], layer, &out->targets[t].indirect, NULL);
     }
     for (int i = 0; i < r->settings->lamps; i++)
         store_lamp(r, i);
@@ -230,6 +232,21 @@ static status make_lamps(const image_settings *set, sample *out)
     return s;
 }
 
+static status make_targets(const image_settings *set, sample *out)
+{
+    const int count = set->targets + set->leds;
+    if (count == 0) return OK;
+    out->targets = calloc((size_t)count, sizeof *out->targets);
+    if (!out->targets) return fail(MERLIN_NO_MEMORY, "out of memory for %d target images", count);
+    out->target_count = count;
+    status s = OK;
+    for (int t = 0; s == OK && t < count; t++) {
+        s = img_new(&out->targets[t].direct, set->size, set->size, 3);
+        if (s == OK) s = img_new(&out->targets[t].indirect, set->size, set->size, 3);
+    }
+    return s;
+}
+
 static status make_layers(const image_settings *set, bool env, sample *out)
 {
     struct {
@@ -250,15 +267,7 @@ static status make_layers(const image_settings *set, bool env, sample *out)
     for (size_t i = 0; s == OK && i < sizeof layers / sizeof *layers; i++)
         if (layers[i].wanted) s = img_new(layers[i].image, set->size, set->size, layers[i].channels);
     if (s == OK) s = make_lamps(set, out);
-    if (s != OK || set->targets == 0) return s;
-    out->targets = calloc((size_t)set->targets, sizeof *out->targets);
-    if (!out->targets) return fail(MERLIN_NO_MEMORY, "out of memory for %d target images", set->targets);
-    out->target_count = set->targets;
-    for (int t = 0; s == OK && t < set->targets; t++) {
-        s = img_new(&out->targets[t].direct, set->size, set->size, 3);
-        if (s == OK) s = img_new(&out->targets[t].indirect, set->size, set->size, 3);
-    }
-    return s;
+    return s == OK ? make_targets(set, out) : s;
 }
 
 /* Filters the layers; the environment casts shadows, and is filtered less than indirect light. */
@@ -283,6 +292,32 @@ static layer_source layer_of(uint64_t seed, uint64_t index, int stream)
     return layer;
 }
 
+static void place_targets(renderer *r, uint64_t seed, uint64_t index)
+{
+    rng lights = rng_at(seed, index, STREAM_LIGHTS), leds = rng_at(seed, index, STREAM_LED_PLACES);
+    for (int t = 0; t < r->out->target_count; t++) {
+        sample_target *under = &r->out->targets[t];
+        if (t < r->settings->targets)
+            sample_target_draw(&lights, under);
+        else
+            sample_target_draw_led(&leds, under);
+        r->lights[t] = sample_target_light(under);
+    }
+}
+
+static void place_lamps(renderer *r, uint64_t seed, uint64_t index)
+{
+    rng lamps = rng_at(seed, index, STREAM_LAMP_PLACES);
+    for (int i = 0; i < r->settings->lamps; i++) {
+        sample_lamp *under = &r->out->lamps[i];
+        if (r->settings->lamp_angles > 0)
+            sample_lamp_draw_at(&lamps, r->settings->lamp_angle[i], under);
+        else
+            sample_lamp_draw(&lamps, r->scene->object, under);
+        r->lamps[i] = sample_lamp_light(under);
+    }
+}
+
 status render_image(trace_scene *scene, const image_settings *settings, uint64_t seed, uint64_t index,
                     const environment *env, sample *out)
 {
@@ -304,6 +339,7 @@ status render_image(trace_scene *scene, const image_settings *settings, uint64_t
                   .flash = {.power = LIGHT_POWER, .at_eye = true},
                   .indirect = layer_of(seed, index, STREAM_INDIRECT),
                   .target = layer_of(seed, index, STREAM_TARGET),
+                  .led = layer_of(seed, index, STREAM_LEDS),
                   .lamp = layer_of(seed, index, STREAM_LAMPS),
                   .surroundings = layer_of(seed, index, STREAM_SURROUNDINGS),
                   .out = out};
@@ -315,20 +351,8 @@ status render_image(trace_scene *scene, const image_settings *settings, uint64_t
         sample_free(out);
         return s;
     }
-    rng lights = rng_at(seed, index, STREAM_LIGHTS);
-    for (int t = 0; t < settings->targets; t++) {
-        float u1 = rng_uniform(&lights), u2 = rng_uniform(&lights);
-        r.lights[t] = (point_light){.position = frontal_light(u1, u2), .power = LIGHT_POWER};
-        out->targets[t].light = r.lights[t].position;
-    }
-    rng lamps = rng_at(seed, index, STREAM_LAMP_PLACES);
-    for (int i = 0; i < settings->lamps; i++) {
-        if (settings->lamp_angles > 0)
-            sample_lamp_draw_at(&lamps, settings->lamp_angle[i], &out->lamps[i]);
-        else
-            sample_lamp_draw(&lamps, scene->object, &out->lamps[i]);
-        r.lamps[i] = sample_lamp_light(&out->lamps[i]);
-    }
+    place_targets(&r, seed, index);
+    place_lamps(&r, seed, index);
     if (env) memcpy(out->sh, env->sh, sizeof out->sh);
     for (int y = 0; y < settings->size; y++)
         for (int x = 0; x < settings->size; x += STRIP)

@@ -24,7 +24,9 @@ typedef struct image_settings {
     camera_slant slant;
     int strata;  /* 1 or even, at most VISIBILITY_MAX_STRATA */
     int paths;   /* per pixel, for indirect light and each target */
-    int targets; /* number of images under lights of the frontal hemisphere, at most SAMPLE_MAX_TARGETS */
+    int targets; /* number of images under lights of the frontal hemisphere */
+    int leds;    /* number of further targets, under LEDs about the camera (render/sample_targets.h); with the others at
+                  * most SAMPLE_MAX_TARGETS */
     float lamp_angle[SAMPLE_MAX_LAMPS]; /* degrees; see lamp_angles */
     int lamp_angles; /* > 0: number of lamps, points as far away as the camera, at these angles from the line to it */
     int lamps;       /* number of images under lamps of any position and size (render/sample_lamps.h), at most

@@ -17,9 +17,11 @@
 
 enum { SAMPLE_GENERATOR_VERSION = 3, SAMPLE_MAX_TARGETS = 64, SAMPLE_MAX_LAMPS = 16 };
 
-/* An image under another point light, with cast shadows. */
+/* An image under another point light, or under an LED, with cast shadows. */
 typedef struct sample_target {
     vec3 light;   /* position in camera space */
+    vec3 axis;    /* of an LED: unit, the direction in which it shines most; else 0, 0, 0 */
+    float lobe;   /* of an LED: exponent of its fall-off with the cosine of the angle to the axis (optics/led.h) */
     img direct;   /* 3 channels, bounce 1, cast shadows included */
     img indirect; /* 3 channels, bounces 2 and 3 */
 } sample_target;
@@ -69,9 +71,11 @@ static inline vec3 sample_normal(vec3 n)
 void sample_free(sample *s);
 /* Writes a sample: channels albedo.R/.G/.B, normal.X/.Y/.Z, roughness.Y, depth.Z, mask.A, direct.*, indirect.*,
  * bounce2.*, bounce3.*, env.*, target00.direct.* …, lamp00.direct.*, lamp00.indirect.*, lamp00.visibility.Y …; the rest
- * as attributes. Written to a temporary name, then renamed. */
+ * as attributes, of which target00.axis and target00.lobe are absent where they are zero. Written to a temporary name,
+ * then renamed. */
 status sample_write(const char *path, const sample *s);
-/* Reads all layers in the file. Refuses files that lack a layer that every sample has, or contain NaN or infinity. */
+/* Reads all layers in the file. Refuses files that lack a layer that every sample has, contain NaN or infinity, or give
+ * a target a lobe about no unit axis. */
 status sample_read(const char *path, sample *out);
 /* Reads everything but env, bounces and targets: what training needs, faster. */
 status sample_read_training(const char *path, sample *out);

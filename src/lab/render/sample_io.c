@@ -12,7 +12,7 @@
 
 enum {
     MAX_CHANNELS = 32 + 6 * SAMPLE_MAX_TARGETS + 7 * SAMPLE_MAX_LAMPS,
-    MAX_ATTRIBUTES = 18 + SAMPLE_MAX_TARGETS + 2 * SAMPLE_MAX_LAMPS,
+    MAX_ATTRIBUTES = 18 + 3 * SAMPLE_MAX_TARGETS + 2 * SAMPLE_MAX_LAMPS,
     NAME_SIZE = 32
 };
 
@@ -104,7 +104,7 @@ void sample_free(sample *s)
 
 typedef struct attribute_list {
     exr_attribute items[MAX_ATTRIBUTES];
-    char names[SAMPLE_MAX_TARGETS][NAME_SIZE], lamp_names[2 * SAMPLE_MAX_LAMPS][NAME_SIZE];
+    char names[SAMPLE_MAX_TARGETS][3][NAME_SIZE], lamp_names[2 * SAMPLE_MAX_LAMPS][NAME_SIZE];
     char seed[24], index[24];
     size_t count;
 } attribute_list;
@@ -114,6 +114,24 @@ static void add_numbers(attribute_list *list, const char *name, const float *val
     exr_attribute *a = &list->items[list->count++];
     *a = (exr_attribute){.name = name, .count = count};
     memcpy(a->values, values, (size_t)count * sizeof *values);
+}
+
+/* Describes targets' lights; of an LED, what makes it one, so that files without LEDs stay as before. */
+static void describe_targets(attribute_list *list, const sample *s)
+{
+    list->items[list->count++] = exr_number("targets", (float)s->target_count);
+    for (int t = 0; t < s->target_count; t++) {
+        const sample_target *under = &s->targets[t];
+        const float at[3] = {under->light.x, under->light.y, under->light.z};
+        const float axis[3] = {under->axis.x, under->axis.y, under->axis.z};
+        char(*names)[NAME_SIZE] = list->names[t];
+        snprintf(names[0], NAME_SIZE, "target%02d.light", t);
+        snprintf(names[1], NAME_SIZE, "target%02d.axis", t);
+        snprintf(names[2], NAME_SIZE, "target%02d.lobe", t);
+        add_numbers(list, names[0], at, 3);
+        if (vec3_length(under->axis) > 0) add_numbers(list, names[1], axis, 3);
+        if (under->lobe != 0) add_numbers(list, names[2], &under->lobe, 1);
+    }
 }
 
 /* Describes lamps; without any nothing is written, so that files without lamps stay as before. */
@@ -147,12 +165,7 @@ static void describe(attribute_list *list, const sample *s)
     list->items[list->count++] = exr_text("index", list->index);
     list->items[list->count++] = exr_text("shape", s->shape);
     list->items[list->count++] = exr_number("generatorVersion", (float)s->generator_version);
-    list->items[list->count++] = exr_number("targets", (float)s->target_count);
-    for (int t = 0; t < s->target_count; t++) {
-        const float at[3] = {s->targets[t].light.x, s->targets[t].light.y, s->targets[t].light.z};
-        snprintf(list->names[t], NAME_SIZE, "target%02d.light", t);
-        add_numbers(list, list->names[t], at, 3);
-    }
+    describe_targets(list, s);
     describe_lamps(list, s);
 }
 
@@ -214,6 +227,26 @@ static status read_optics(const exr_file *f, const char *path, sample *s)
     return OK;
 }
 
+static status make_target(const exr_file *f, const char *path, int t, sample_target *under)
+{
+    char name[NAME_SIZE];
+    float at[3], axis[3] = {0, 0, 0};
+    snprintf(name, sizeof name, "target%02d.light", t);
+    if (!exr_get_numbers(f, name, at, 3)) return fail(MERLIN_BAD_INPUT, "%s: attribute %s is missing", path, name);
+    snprintf(name, sizeof name, "target%02d.axis", t);
+    exr_get_numbers(f, name, axis, 3);
+    snprintf(name, sizeof name, "target%02d.lobe", t);
+    exr_get_numbers(f, name, &under->lobe, 1);
+    under->light = vec3_of(at);
+    under->axis = vec3_of(axis);
+    float length = vec3_length(under->axis);
+    if (!(under->lobe >= 0) || ((under->lobe > 0 || length > 0) && !(fabsf(length - 1) < 1e-3f)))
+        return fail(MERLIN_BAD_INPUT, "%s: impossible lobe of exponent %g about an axis of length %g (target%02d)",
+                    path, (double)under->lobe, (double)length, t);
+    status s = img_new(&under->direct, exr_width(f), exr_height(f), 3);
+    return s == OK ? img_new(&under->indirect, exr_width(f), exr_height(f), 3) : s;
+}
+
 static status make_targets(const exr_file *f, const char *path, sample *s)
 {
     float count = 0;
@@ -223,17 +256,10 @@ static status make_targets(const exr_file *f, const char *path, sample *s)
     s->targets = calloc((size_t)count, sizeof *s->targets);
     if (!s->targets) return fail(MERLIN_NO_MEMORY, "out of memory to read %s", path);
     s->target_count = (int)count;
-    for (int t = 0; t < s->target_count; t++) {
-        char name[NAME_SIZE];
-        float at[3];
-        snprintf(name, sizeof name, "target%02d.light", t);
-        if (!exr_get_numbers(f, name, at, 3)) return fail(MERLIN_BAD_INPUT, "%s: attribute %s is missing", path, name);
-        s->targets[t].light = vec3_of(at);
-        status st = img_new(&s->targets[t].direct, exr_width(f), exr_height(f), 3);
-        if (st == OK) st = img_new(&s->targets[t].indirect, exr_width(f), exr_height(f), 3);
-        if (st != OK) return st;
-    }
-    return OK;
+    status st = OK;
+    for (int t = 0; t < s->target_count && st == OK; t++)
+        st = make_target(f, path, t, &s->targets[t]);
+    return st;
 }
 
 static status make_lamp(const exr_file *f, const char *path, int i, sample_lamp *under)

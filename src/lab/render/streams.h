@@ -14,6 +14,8 @@ enum {
     STREAM_LAMPS,
     STREAM_LAMP_PLACES,
     STREAM_LENS,
+    STREAM_LEDS,
+    STREAM_LED_PLACES,
 };
 
 #endif

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "optics/led.h"
 #include "stereo/algebra/dense.h"
 #include "stereo/capture/shrink.h"
 #include "stereo/fit/pixel_fit.h"
@@ -46,11 +47,9 @@ static vec3 middle_of(const merlin_capture *c, const merlin_surface *s)
 static vec3 near_light(const merlin_light *light, vec3 middle)
 {
     vec3 to = vec3_sub(vec3_of(light->position), middle);
-    float squared = fmaxf(vec3_dot(to, to), 1e-12f), power = 1 / squared;
+    float squared = fmaxf(vec3_dot(to, to), 1e-12f);
     vec3 toward = vec3_scale(to, 1 / sqrtf(squared));
-    if (light->lobe > 0 && vec3_dot(vec3_of(light->direction), vec3_of(light->direction)) > 0)
-        power *= powf(fmaxf(-vec3_dot(toward, vec3_of(light->direction)), 0), light->lobe);
-    return vec3_scale(toward, power);
+    return vec3_scale(toward, 1 / squared * led_share(vec3_of(light->direction), light->lobe, toward));
 }
 
 static float mean_intensity(const merlin_capture *c, const merlin_light *light)

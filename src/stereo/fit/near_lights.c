@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "optics/led.h"
+
 void pst_near_lights_at(const pst_problem *p, vec3 at, pst_near_lights *out)
 {
     int count = p->capture->count, padded = pst_padded(count);
@@ -14,9 +16,7 @@ void pst_near_lights_at(const pst_problem *p, vec3 at, pst_near_lights *out)
         vec3 to = vec3_sub(vec3_of(from->position), at);
         float squared = fmaxf(vec3_dot(to, to), 1e-12f);
         vec3 l = vec3_scale(to, 1 / sqrtf(squared));
-        float power = 1 / squared;
-        if (from->lobe > 0 && vec3_dot(vec3_of(from->direction), vec3_of(from->direction)) > 0)
-            power *= powf(fmaxf(-vec3_dot(l, vec3_of(from->direction)), 0), from->lobe);
+        float power = 1 / squared * led_share(vec3_of(from->direction), from->lobe, l);
         out->x[k] = l.x;
         out->y[k] = l.y;
         out->z[k] = l.z;

@@ -14,6 +14,13 @@ succeeds '^single image' table --data near --count 1 --figure sheet.png
 grep -q '^  real images' stdout || complain "no row of real images: $(cat stdout)"
 succeeds '"real_images_uncalibrated"' table --data near --count 1 --draws 1 --json
 grep -q '"draws":[[:space:]]*1,' stdout || complain "not one draw: $(cat stdout)"
+"$MERLIN_LAB" render --count 1 --size 64 --spp 1 --paths 1 --targets 0 --leds 8 --no-env --quiet -o leds >/dev/null
+grep -qx 'leds 8' leds/render.txt || complain "no word of LEDs: $(cat leds/render.txt)"
+grep -q '^leds' near/render.txt && complain "LEDs in a set without any"
+succeeds '^  real images' table --data leds --draws 1
+refuses 2 '"65"' "$MERLIN_LAB" render --count 1 --leds 65 -o none
+refuses 2 '40 targets and 25 LEDs: at most 64 together' "$MERLIN_LAB" render --count 1 --targets 40 --leds 25 -o none
+[[ -e none ]] && complain "a folder for refused options"
 succeeds '^usage' table --help
 
 refuses 2 'data DIR is missing' table

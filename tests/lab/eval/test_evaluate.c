@@ -46,6 +46,30 @@ static void evaluation_fills_every_row_and_class(void **state)
     fill_rows(*state, true);
 }
 
+/* Relighting has no lobes, so that there is nothing to compare with. */
+static void pictures_under_leds_are_no_truth_of_relighting(void **state)
+{
+    const fixture *f = *state;
+    char *folder = file_join(f->folder, "leds"), *path = sample_path(folder, 0);
+    sample s;
+    assert_int_equal(file_make_folder(folder), OK);
+    write_sphere(folder, 0, SIZE, 5);
+    assert_int_equal(sample_read(path, &s), OK);
+    for (int i = 2; i < 5; i++) {
+        s.targets[i].axis = vec3_make(0, 0, -1);
+        s.targets[i].lobe = 1;
+    }
+    assert_int_equal(sample_write(path, &s), OK);
+    eval_options options = {.data = folder, .weights = f->weights, .raw = true, .quiet = true};
+    eval_report r;
+    assert_int_equal(eval_run(&options, &r), OK);
+    assert_int_equal(r.all.count[EVAL_TRACED_NETWORK][EVAL_MODEL], 2);
+    assert_int_equal(r.all.count[EVAL_TRACED_BRDF][EVAL_TRUE_MAPS], 2);
+    sample_free(&s);
+    free(path);
+    free(folder);
+}
+
 static void samples_are_sorted_by_how_much_of_them_is_saturated(void **state)
 {
     const fixture *f = *state;
@@ -292,6 +316,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(evaluation_fills_every_row_and_class),
+        cmocka_unit_test(pictures_under_leds_are_no_truth_of_relighting),
         cmocka_unit_test(samples_are_sorted_by_how_much_of_them_is_saturated),
         cmocka_unit_test(errors_are_sorted_by_what_a_photograph_shows),
         cmocka_unit_test(evaluation_is_deterministic),

@@ -13,6 +13,7 @@
 #include "lab/eval/stereo/stereo_frame.h"
 #include "lab/eval/stereo/stereo_object.h"
 #include "lab/eval/stereo/stereo_table.h"
+#include "optics/led.h"
 #include "photo_stereo/near_capture.h"
 #include "photo_stereo/subsets.h"
 #include "scratch.h"
@@ -110,6 +111,54 @@ static void real_pictures_of_a_sample_give_its_normals(void **state)
     merlin_surface_free(&first);
     merlin_surface_free(&again);
     merlin_surface_free(&other);
+    stereo_object_free(&o);
+    sample_free(&s);
+}
+
+/* Makes LEDs of a sample's lights, which look straight ahead. */
+static void make_leds(sample *s, float lobe)
+{
+    const int size = s->mask.width;
+    const camera view = {.width = size, .height = size, .fov = s->fov};
+    for (int i = 0; i < s->target_count; i++) {
+        sample_target *led = &s->targets[i];
+        led->axis = vec3_make(0, 0, -1);
+        led->lobe = lobe;
+        for (int p = 0; p < size * size; p++) {
+            vec3 at = camera_point(&view, (float)(p % size) + 0.5f, (float)(p / size) + 0.5f, s->depth.data[p]);
+            float share = led_share(led->axis, lobe, vec3_normalize(vec3_sub(led->light, at)));
+            for (int k = 0; k < 3; k++)
+                led->direct.data[3 * p + k] *= share;
+        }
+    }
+}
+
+/* Returns the mean angle to the true normals, in degrees, of the near solver on the first draw of pictures. */
+static double near_angle(const stereo_object *o)
+{
+    merlin_surface found;
+    assert_int_equal(subset_solve(&o->capture, 0, MERLIN_STEREO_NEAR, &found), OK);
+    double angle = normal_mean_angle(&found.normal, &o->capture, NULL);
+    merlin_surface_free(&found);
+    return angle;
+}
+
+/* They are as good as point lights; taken for those, they mislead. */
+static void leds_of_a_sample_are_solved_by_their_lobes(void **state)
+{
+    (void)state;
+    sample s = ball_sample(64, 34);
+    make_leds(&s, 1.25f);
+    stereo_object o;
+    read_back(&s, &o);
+    for (int i = 0; i < o.capture.count; i++)
+        assert_true(o.capture.light[i].lobe == 1.25f && o.capture.light[i].direction[2] == -1);
+    double by_lobes = near_angle(&o);
+    for (int i = 0; i < o.capture.count; i++)
+        o.capture.light[i].lobe = 0;
+    double alike = near_angle(&o);
+    print_message("ball under LEDs: %.2f degrees, without their lobes %.2f\n", by_lobes, alike);
+    assert_true(by_lobes < 2 && alike > 4);
     stereo_object_free(&o);
     sample_free(&s);
 }
@@ -265,6 +314,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_sample_is_cut_to_its_object_and_keeps_its_camera),
         cmocka_unit_test(real_pictures_of_a_sample_give_its_normals),
+        cmocka_unit_test(leds_of_a_sample_are_solved_by_their_lobes),
         cmocka_unit_test(a_wide_capture_is_cut_and_shrunk_with_its_camera),
         cmocka_unit_test(normals_keep_their_angle_to_the_line_of_sight),
         cmocka_unit_test(an_object_that_shrinking_takes_apart_is_refused),

@@ -139,10 +139,12 @@ static vec3 on_wall(double a, double b)
 
 static const vec3 floor_normal = {0, 1, 0}, wall_normal = {0, 0, 1};
 
-static double flash_radiance(vec3 p, vec3 n)
+/* Returns bounce 1 of a light that nothing hides. */
+static double lit_radiance(const point_light *from, vec3 p, vec3 n)
 {
-    double d2 = vec3_dot(p, p);
-    return 5.95 * 0.5 / pi * fmax(0, -vec3_dot(n, p) / sqrt(d2)) / d2;
+    vec3 to = vec3_sub(from->position, p);
+    double d2 = vec3_dot(to, to), d = sqrt(d2), beside = fmax(0, -vec3_dot(to, from->axis) / d);
+    return from->power * 0.5 / pi * fmax(0, vec3_dot(n, to) / d) / d2 * pow(beside, from->lobe);
 }
 
 /* Returns cosθ cosθ' / d² between two surface points. */
@@ -154,32 +156,32 @@ static double geometry_term(vec3 p, vec3 n, vec3 q, vec3 m)
 }
 
 /* Returns bounce 2 leaving p of the floor (or wall): the other square's direct light, by midpoint quadrature. */
-static double bounce2_at(vec3 p, vec3 n, vec3 (*other)(double, double), vec3 m, int steps)
+static double bounce2_at(const point_light *from, vec3 p, vec3 n, vec3 (*other)(double, double), vec3 m, int steps)
 {
     double sum = 0;
     for (int i = 0; i < steps; i++)
         for (int j = 0; j < steps; j++) {
             vec3 q = other((i + 0.5) / steps, (j + 0.5) / steps);
-            sum += geometry_term(p, n, q, m) * flash_radiance(q, m);
+            sum += geometry_term(p, n, q, m) * lit_radiance(from, q, m);
         }
     return 0.5 / pi * sum / ((double)steps * steps);
 }
 
-static double bounce3_at(vec3 p, int steps)
+static double bounce3_at(const point_light *from, vec3 p, int steps)
 {
     double sum = 0;
     for (int i = 0; i < steps; i++)
         for (int j = 0; j < steps; j++) {
             vec3 q = on_wall((i + 0.5) / steps, (j + 0.5) / steps);
             sum += geometry_term(p, floor_normal, q, wall_normal) *
-                   bounce2_at(q, wall_normal, on_floor, floor_normal, steps);
+                   bounce2_at(from, q, wall_normal, on_floor, floor_normal, steps);
         }
     return 0.5 / pi * sum / ((double)steps * steps);
 }
 
-static void open_corner_of_two_diffuse_squares_matches_quadrature(void **state)
+/* Compares bounces 2 and 3 at three places of the floor. */
+static void check_corner(const point_light *light)
 {
-    (void)state;
     stage s;
     shape_quad quads[2] = {{floor_origin, {1, 0, 0}, {0, 0, -1}}, {wall_origin, {1, 0, 0}, {0, 1, 0}}};
     stage_open(&s, shape_quads(quads, 2), shape_grey);
@@ -189,7 +191,6 @@ static void open_corner_of_two_diffuse_squares_matches_quadrature(void **state)
         enum { PATHS = 400000 };
         vec3 p = on_floor(places[k][0], places[k][1]);
         scene_surface at = {p, floor_normal, floor_normal, {0.5f, 0.5f, 0.5f}, 0.4f};
-        point_light flash = {.power = 5.95f, .at_eye = true};
         rng r = rng_at(7, (uint64_t)k, 0);
         sequence spread = sequence_of(&r);
         path_source source = {&spread, &r};
@@ -199,15 +200,31 @@ static void open_corner_of_two_diffuse_squares_matches_quadrature(void **state)
         enum { ABREAST = 100 };
         for (; points.index < PATHS; points.index += ABREAST) {
             vec3 bounce[1][2];
-            point_light_paths(&s.scene, &points, 1, &flash, &source, ABREAST, bounce);
+            point_light_paths(&s.scene, &points, 1, light, &source, ABREAST, bounce);
             sum[0] += bounce[0][0].x;
             sum[1] += bounce[0][1].x;
         }
         /* 400000 paths, of which a tenth or more hit: relative deviation below 0.005, and the quadratures' own error */
-        assert_within(sum[0] / PATHS, bounce2_at(p, floor_normal, on_wall, wall_normal, 400), 0.01);
-        assert_within(sum[1] / PATHS, bounce3_at(p, 40), 0.03);
+        assert_within(sum[0] / PATHS, bounce2_at(light, p, floor_normal, on_wall, wall_normal, 400), 0.01);
+        assert_within(sum[1] / PATHS, bounce3_at(light, p, 40), 0.03);
     }
     stage_close(&s);
+}
+
+static void open_corner_of_two_diffuse_squares_matches_quadrature(void **state)
+{
+    (void)state;
+    check_corner(&(point_light){.power = 5.95f, .at_eye = true});
+}
+
+/* The lobe holds where the light arrives, at the other square, and not where it is seen. */
+static void open_corner_under_an_led_matches_quadrature(void **state)
+{
+    (void)state;
+    check_corner(&(point_light){.position = {0.3f, 0.2f, 0.1f},
+                                .power = 5.95f,
+                                .axis = vec3_normalize(vec3_make(-0.5f, 0.1f, -1)),
+                                .lobe = 2.5f});
 }
 
 /* ---- direct light ---------------------------------------------------------------------------------------------- */
@@ -274,6 +291,81 @@ static void plate_casts_a_shadow_on_the_floor_under_it(void **state)
     stage_close(&s);
 }
 
+/* The plane's points see the LED at the same angle from its axis and from the normal, so that the irradiance is
+ * Φ cos^(lobe + 1) / d². */
+static void an_led_over_a_plane_falls_off_by_its_lobe(void **state)
+{
+    (void)state;
+    enum { POINTS = 40 };
+    stage s;
+    shape_quad quad = {{-2, -0.3f, 1}, {4, 0, 0}, {0, 0, -4}};
+    stage_open(&s, shape_quads(&quad, 1), shape_grey);
+    s.scene.diffuse_only = true;
+    const double height = 0.7;
+    for (float lobe = 0; lobe < 2.1f; lobe += 0.7f) {
+        const point_light led = {.position = {0, 0.4f, -1}, .power = 5.95f, .axis = {0, -1, 0}, .lobe = lobe};
+        scene_surface at[POINTS];
+        vec3 view[POINTS], lit[POINTS];
+        for (int i = 0; i < POINTS; i++) {
+            at[i] = (scene_surface){{0.04f * (float)i, -0.3f, -1}, {0, 1, 0}, {0, 1, 0}, {0.5f, 0.5f, 0.5f}, 0.4f};
+            view[i] = vec3_make(0, 1, 0);
+        }
+        point_light_direct(&s.scene, at, view, POINTS, &led, lit);
+        for (int i = 0; i < POINTS; i++) {
+            double d2 = height * height + 0.0016 * i * i, cosine = height / sqrt(d2);
+            assert_within(lit[i].x, 0.5 / pi * 5.95 * pow(cosine, (double)lobe + 1) / d2, 1e-5);
+        }
+    }
+    stage_close(&s);
+}
+
+static void an_led_lights_nothing_behind_itself(void **state)
+{
+    (void)state;
+    stage s;
+    shape_quad quad = {{-2, -0.3f, 1}, {4, 0, 0}, {0, 0, -4}};
+    stage_open(&s, shape_quads(&quad, 1), shape_grey);
+    point_light led = {.position = {0, 0.4f, -1}, .power = 5.95f, .axis = {0, 1, 0}, .lobe = 0.1f};
+    scene_surface at = {{0, -0.3f, -1}, {0, 1, 0}, {0, 1, 0}, {0.5f, 0.5f, 0.5f}, 0.4f};
+    vec3 view = {0, 1, 0}, lit;
+    point_light_direct(&s.scene, &at, &view, 1, &led, &lit);
+    assert_true(lit.x == 0 && lit.y == 0 && lit.z == 0);
+    stage_close(&s);
+}
+
+/* The numbers are the same, not nearly the same, in front of the LED and behind it. */
+static void a_lobe_of_exponent_zero_is_a_point_light(void **state)
+{
+    (void)state;
+    enum { POINTS = 20, PATHS = 64 };
+    stage s;
+    shape_quad quads[2] = {{floor_origin, {1, 0, 0}, {0, 0, -1}}, {wall_origin, {1, 0, 0}, {0, 1, 0}}};
+    stage_open(&s, shape_quads(quads, 2), shape_patterned);
+    const point_light bulb = {.position = {0.1f, 0.2f, -1.1f}, .power = 5.95f};
+    point_light led = bulb;
+    led.axis = vec3_make(0, 0, -1);
+    scene_surface at[POINTS];
+    vec3 view[POINTS], by_bulb[POINTS], by_led[POINTS], bulb_bounce[1][2], led_bounce[1][2];
+    for (int i = 0; i < POINTS; i++) {
+        vec3 p = on_floor(0.05 * i, 0.05 * i);
+        at[i] = (scene_surface){p, floor_normal, floor_normal, {0.5f, 0.3f, 0.7f}, 0.4f};
+        view[i] = vec3_normalize(vec3_scale(p, -1));
+    }
+    point_light_direct(&s.scene, at, view, POINTS, &bulb, by_bulb);
+    point_light_direct(&s.scene, at, view, POINTS, &led, by_led);
+    assert_true(by_bulb[10].x > 0);
+    assert_memory_equal(by_led, by_bulb, sizeof by_bulb);
+    rng r = rng_at(7, 0, 0);
+    sequence spread = sequence_of(&r);
+    path_source source = {&spread, &r};
+    path_points points = {at, view, POINTS, 0};
+    point_light_paths(&s.scene, &points, 1, &bulb, &source, PATHS, bulb_bounce);
+    point_light_paths(&s.scene, &points, 1, &led, &source, PATHS, led_bounce);
+    assert_true(bulb_bounce[0][0].x > 0 && bulb_bounce[0][1].x > 0);
+    assert_memory_equal(led_bounce, bulb_bounce, sizeof bulb_bounce);
+    stage_close(&s);
+}
+
 /* The plate hides the part of the disc on its side of a line through its edge: half, directly under the edge. */
 static void a_disc_half_behind_a_plate_gives_half(void **state)
 {
@@ -330,7 +422,7 @@ static void layers_do_not_change_when_another_is_asked_for(void **state)
 {
     (void)state;
     stage s;
-    sample plain, rich;
+    sample plain, rich, richer;
     shape_quad quads[2] = {{floor_origin, {1, 0, 0}, {0, 0, -1}}, {wall_origin, {1, 0, 0}, {0, 1, 0}}};
     stage_open(&s, shape_quads(quads, 2), shape_patterned);
     image_settings settings = {.size = 32, .fov = 60, .strata = 2, .paths = 4};
@@ -341,8 +433,15 @@ static void layers_do_not_change_when_another_is_asked_for(void **state)
     assert_int_equal(render_image(&s.scene, &settings, 5, 9, NULL, &rich), OK);
     assert_memory_equal(plain.indirect.data, rich.indirect.data, 32 * 32 * 3 * sizeof(float));
     assert_memory_equal(plain.direct.data, rich.direct.data, 32 * 32 * 3 * sizeof(float));
+    settings.leds = 2;
+    assert_int_equal(render_image(&s.scene, &settings, 5, 9, NULL, &richer), OK);
+    assert_int_equal(richer.target_count, 4);
+    assert_memory_equal(rich.targets[1].indirect.data, richer.targets[1].indirect.data, 32 * 32 * 3 * sizeof(float));
+    assert_memory_equal(rich.targets[1].direct.data, richer.targets[1].direct.data, 32 * 32 * 3 * sizeof(float));
+    assert_memory_equal(rich.lamps[1].indirect.data, richer.lamps[1].indirect.data, 32 * 32 * 3 * sizeof(float));
     sample_free(&plain);
     sample_free(&rich);
+    sample_free(&richer);
     stage_close(&s);
 }
 
@@ -353,8 +452,12 @@ int main(void)
         cmocka_unit_test(convex_object_has_no_indirect_light_at_all),
         cmocka_unit_test(surroundings_of_any_radiance_light_a_sphere_in_full),
         cmocka_unit_test(open_corner_of_two_diffuse_squares_matches_quadrature),
+        cmocka_unit_test(open_corner_under_an_led_matches_quadrature),
         cmocka_unit_test(direct_image_agrees_with_the_brdf_applied_to_the_stored_maps),
         cmocka_unit_test(plate_casts_a_shadow_on_the_floor_under_it),
+        cmocka_unit_test(an_led_over_a_plane_falls_off_by_its_lobe),
+        cmocka_unit_test(an_led_lights_nothing_behind_itself),
+        cmocka_unit_test(a_lobe_of_exponent_zero_is_a_point_light),
         cmocka_unit_test(a_disc_half_behind_a_plate_gives_half),
         cmocka_unit_test(lamps_are_as_bright_in_the_middle_as_the_flash),
         cmocka_unit_test(layers_do_not_change_when_another_is_asked_for),

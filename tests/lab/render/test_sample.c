@@ -53,6 +53,8 @@ static sample make_sample(void)
         fill(&s.targets[t].indirect, 3, 12 + (float)t);
         s.targets[t].light = vec3_make(0.25f, (float)t, -1);
     }
+    s.targets[1].axis = vec3_make(0, 0.6f, -0.8f);
+    s.targets[1].lobe = 1.75f;
     s.lamp_count = 2;
     s.lamps = calloc(2, sizeof *s.lamps);
     for (int i = 0; i < 2; i++) {
@@ -94,6 +96,8 @@ static void sample_survives_writing_and_reading(void **state)
     assert_int_equal(r.target_count, 2);
     assert_same_image(&s.targets[1].direct, &r.targets[1].direct);
     assert_same_image(&s.targets[0].indirect, &r.targets[0].indirect);
+    assert_true(r.targets[1].axis.y == 0.6f && r.targets[1].axis.z == -0.8f && r.targets[1].lobe == 1.75f);
+    assert_true(vec3_length(r.targets[0].axis) == 0 && r.targets[0].lobe == 0);
     assert_int_equal(r.lamp_count, 2);
     assert_same_image(&s.lamps[1].direct, &r.lamps[1].direct);
     assert_same_image(&s.lamps[0].indirect, &r.lamps[0].indirect);
@@ -106,6 +110,40 @@ static void sample_survives_writing_and_reading(void **state)
     assert_memory_equal(s.sh, r.sh, sizeof s.sh);
     sample_free(&s);
     sample_free(&r);
+}
+
+/* Files of point lights alone are what they were before there were LEDs. */
+static void a_point_light_has_no_attributes_of_an_led(void **state)
+{
+    (void)state;
+    sample s = make_sample();
+    exr_file *f;
+    assert_int_equal(sample_write(path, &s), OK);
+    assert_int_equal(exr_open(path, &f), OK);
+    assert_true(exr_has_attribute(f, "target00.light") && exr_has_attribute(f, "target01.light"));
+    assert_true(exr_has_attribute(f, "target01.axis") && exr_has_attribute(f, "target01.lobe"));
+    assert_false(exr_has_attribute(f, "target00.axis") || exr_has_attribute(f, "target00.lobe"));
+    exr_close(f);
+    sample_free(&s);
+}
+
+static void an_impossible_led_is_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        vec3 axis;
+        float lobe;
+    } wrong[] = {{{0, 0, -1}, -1}, {{0, 0, 0}, 1}, {{0, 0, -2}, 1}, {{0, 0.5f, 0}, 0}};
+    sample s = make_sample(), r;
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        s.targets[1].axis = wrong[i].axis;
+        s.targets[1].lobe = wrong[i].lobe;
+        assert_int_equal(sample_write(path, &s), OK);
+        assert_int_equal(sample_read(path, &r), MERLIN_BAD_INPUT);
+        assert_non_null(strstr(status_message(), "impossible lobe"));
+        assert_non_null(strstr(status_message(), "target01"));
+    }
+    sample_free(&s);
 }
 
 static void training_reads_no_more_than_it_needs(void **state)
@@ -213,6 +251,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sample_survives_writing_and_reading),
+        cmocka_unit_test(a_point_light_has_no_attributes_of_an_led),
+        cmocka_unit_test(an_impossible_led_is_refused),
         cmocka_unit_test(training_reads_no_more_than_it_needs),
         cmocka_unit_test(training_reads_the_environment_where_it_is_asked_to),
         cmocka_unit_test(sample_without_a_layer_is_refused_by_name),

@@ -9,6 +9,7 @@
 #include "lab/render/paths.h"
 #include "optics/brdf.h"
 #include "optics/camera.h"
+#include "optics/led.h"
 
 enum { MOST_POINTS = 16 };
 /* Least cosine to the line of sight; more grazing surfaces cover too little of a pixel. */
@@ -109,13 +110,21 @@ static bool is_lit(rendering *r, const scene_surface *at, vec3 l, float distance
     return r->how->unshadowed || !trace_occluded(&r->scene, trace_leave(at), l, distance);
 }
 
-static vec3 by_way_of_surfaces(rendering *r, const scene_surface *at, vec3 view, vec3 position, float power)
+/* Returns the light as the tracer has it, of power 1; a distant one is as bright from far away. */
+static point_light source_of(const rendered *how, const merlin_light *from)
 {
-    point_light source = {.position = position, .power = power};
+    if (!is_near(how))
+        return (point_light){.position = vec3_scale(vec3_of(from->direction), far_away), .power = far_away * far_away};
+    return (point_light){
+        .position = vec3_of(from->position), .power = 1, .axis = vec3_of(from->direction), .lobe = from->lobe};
+}
+
+static vec3 by_way_of_surfaces(rendering *r, const scene_surface *at, vec3 view, const point_light *source)
+{
     path_points point = {at, &view, 1, r->path++};
     path_source drawn = {&r->spread, &r->random};
     vec3 bounce[1][2];
-    point_light_paths(&r->scene, &point, 1, &source, &drawn, 1, bounce);
+    point_light_paths(&r->scene, &point, 1, source, &drawn, 1, bounce);
     return vec3_add(bounce[0][0], bounce[0][1]);
 }
 
@@ -123,14 +132,12 @@ static vec3 by_way_of_surfaces(rendering *r, const scene_surface *at, vec3 view,
 static vec3 radiance(rendering *r, const scene_surface *at, vec3 view, const merlin_light *from)
 {
     bool near = is_near(r->how);
-    vec3 position = near ? vec3_of(from->position) : vec3_scale(vec3_of(from->direction), far_away), sum = {0, 0, 0};
-    vec3 to = vec3_sub(position, at->position), l = near ? vec3_normalize(to) : vec3_of(from->direction);
-    float power = near ? 1 / vec3_dot(to, to) : 1;
+    const point_light source = source_of(r->how, from);
+    vec3 to = vec3_sub(source.position, at->position), l = near ? vec3_normalize(to) : vec3_of(from->direction);
+    vec3 sum = {0, 0, 0};
+    float power = near ? led_share(source.axis, source.lobe, l) / vec3_dot(to, to) : 1;
     if (is_lit(r, at, l, vec3_length(to))) sum = vec3_scale(reflected(r->how, at, view, l), power);
-    if (r->how->paths > 0)
-        sum = vec3_add(sum, by_way_of_surfaces(r, at, view, position, near ? 1 : far_away * far_away));
-    /* the lobe is applied to all of the LED's light, as seen from the surface */
-    return r->how->leds ? vec3_scale(sum, powf(fmaxf(-vec3_dot(l, vec3_of(from->direction)), 0), from->lobe)) : sum;
+    return r->how->paths > 0 ? vec3_add(sum, by_way_of_surfaces(r, at, view, &source)) : sum;
 }
 
 static void camera_ray_of(const rendered *how, float x, float y, vec3 *origin, vec3 *direction)

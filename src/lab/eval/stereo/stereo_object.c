@@ -90,7 +90,10 @@ static status take_targets(const sample *from, merlin_capture *c)
     if (s == OK) s = img_new(&picture, from->mask.width, from->mask.height, 3);
     for (int i = 0; i < from->target_count && s == OK; i++) {
         sum_into(&from->targets[i].direct, &from->targets[i].indirect, NEAR_CAPTURE_WHITE, &picture);
-        s = near_capture_add(c, &picture, from->targets[i].light);
+        merlin_light light = {.lobe = from->targets[i].lobe};
+        vec3_put(from->targets[i].light, light.position);
+        vec3_put(from->targets[i].axis, light.direction);
+        s = near_capture_add(c, &picture, &light);
     }
     img_free(&picture);
     if (s == OK) s = img_copy(&c->normal_true, &from->normal);
@@ -103,8 +106,8 @@ static status read_sample(const char *path, stereo_object *out)
     status s = sample_read(path, &from);
     if (s != OK) return s;
     if (from.target_count < 3)
-        s = fail(MERLIN_BAD_INPUT, "%s has %d pictures under other lights; render it with --targets 52", path,
-                 from.target_count);
+        s = fail(MERLIN_BAD_INPUT, "%s has %d pictures under other lights; render it with --targets 52 or --leds 52",
+                 path, from.target_count);
     if (s == OK) s = take_targets(&from, &out->capture);
     if (s == OK) s = img_new(&out->photo, from.mask.width, from.mask.height, 3);
     if (s == OK) sum_into(&from.direct, &from.indirect, PHOTO_WHITE, &out->photo);

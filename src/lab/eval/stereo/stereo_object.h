@@ -10,9 +10,10 @@
  *     stereo_object_free(&o);
  *     file_list_free(path, count);
  *
- * An object is a sample of merlin-lab render --targets (its targets are the capture, its flash picture the photograph)
- * or a folder in the LUCES or DiLiGenT layout. Either is cut to the square around the object that merlin_estimate would
- * take, and shrunk by a whole number until it is at most STEREO_OBJECT_SIDE pixels wide. */
+ * An object is a sample of merlin-lab render --targets or --leds (its targets are the capture, LEDs with their lobes,
+ * its flash picture the photograph) or a folder in the LUCES or DiLiGenT layout. Either is cut to the square around the
+ * object that merlin_estimate would take, and shrunk by a whole number until it is at most STEREO_OBJECT_SIDE pixels
+ * wide. */
 #ifndef MERLIN_LAB_EVAL_STEREO_STEREO_OBJECT_H
 #define MERLIN_LAB_EVAL_STEREO_STEREO_OBJECT_H
 
