@@ -329,7 +329,7 @@ status model_build(const model_config *config, model_part part, nn_graph **out)
     if (!g) return fail(MERLIN_NO_MEMORY, "out of memory while building model \"%s\"", config->name);
     status s = OK;
     if (config->nfps_width) {
-        nfps_build(g, config, part);
+        s = nfps_build(g, config, part);
     } else if (part == MODEL_INDIRECT) {
         s = build_indirect(g, config);
     } else if (part == MODEL_RELIGHT) {

@@ -76,6 +76,10 @@ status network_open_later(const char *weights, network **out)
     if (s == OK && (*out)->config.only_lights)
         s = fail(MERLIN_BAD_INPUT, "%s: model \"%s\" tells only the lights of several photographs, and makes no maps",
                  weights, (*out)->config.name);
+    if (s == OK && (*out)->config.nfps_width)
+        s = fail(MERLIN_BAD_INPUT,
+                 "%s: model \"%s\" is for pictures under known lights, and makes no maps of photographs", weights,
+                 (*out)->config.name);
     return keep_if(s, out);
 }
 

@@ -10,19 +10,16 @@
 #include "base/messages.h"
 #include "base/progress.h"
 #include "lab/train/checkpoint.h"
+#include "lab/train/train_paths.h"
 #include "lab/train/train_programs.h"
 #include "lab/train/train_rates.h"
-
-typedef struct paths {
-    char *checkpoint, *curves, *validation, *chart, *weights, *seconds;
-} paths;
 
 typedef struct run {
     const train_options *options;
     model_config model;
     train_config training;
     char *model_json, *training_json;
-    paths paths;
+    train_paths paths;
     train_dataset *data;
     size_t training_count;
     int batch; /* of this rank: its share of the configuration's */
@@ -49,12 +46,7 @@ static void close_run(run *r)
     nn_params_free(r->params);
     nn_graph_free(r->graph);
     train_dataset_close(r->data);
-    free(r->paths.checkpoint);
-    free(r->paths.curves);
-    free(r->paths.validation);
-    free(r->paths.chart);
-    free(r->paths.weights);
-    free(r->paths.seconds);
+    train_paths_free(&r->paths);
     free(r->model_json);
     free(r->training_json);
 }
@@ -62,6 +54,12 @@ static void close_run(run *r)
 static bool is_first(const run *r)
 {
     return ranks_index(r->options->together) == 0;
+}
+
+/* The network of near lights. */
+static bool is_nfps(const run *r)
+{
+    return r->model.nfps_width > 0;
 }
 
 static status read_configuration(run *r)
@@ -72,7 +70,7 @@ static status read_configuration(run *r)
     r->batch = r->training.batch / sharing;
     if (r->training.batch % sharing)
         return fail(MERLIN_WRONG_USE, "a batch of %d is not to be shared by %d ranks", r->training.batch, sharing);
-    if (r->training.most_pictures != 1 && !r->model.several)
+    if (r->training.most_pictures != 1 && !r->model.several && !is_nfps(r))
         return fail(MERLIN_BAD_INPUT, "%s: \"most_pictures\" needs a model with \"several\"", r->options->config);
     r->model_json = model_config_write(&r->model);
     return r->model_json ? OK : fail(MERLIN_NO_MEMORY, "out of memory");
@@ -94,42 +92,9 @@ static status record_training(run *r)
     return r->training_json ? OK : fail(MERLIN_NO_MEMORY, "out of memory");
 }
 
-/* Refuses to overwrite the weights that a run starts from. */
-static status check_kept(const run *r)
-{
-    bool replaces = r->options->init && file_is_same(r->options->init, r->paths.weights);
-    for (const char *const *w = r->options->init_shared; w && *w; w++)
-        replaces |= file_is_same(*w, r->paths.weights);
-    if (!replaces) return OK;
-    return fail(MERLIN_WRONG_USE, "%s would be replaced by what is trained from it: name another folder",
-                r->paths.weights);
-}
-
-/* Composes the output's paths; the folder is made once data and model are accepted. */
-static status name_output(run *r)
-{
-    const char *folder = r->options->output;
-    r->paths = (paths){file_join(folder, "checkpoint.safetensors"), file_join(folder, "curves.csv"),
-                       file_join(folder, "validation.csv"),         file_join(folder, "curves.png"),
-                       file_join(folder, "weights.safetensors"),    file_join(folder, "seconds.txt")};
-    const paths *p = &r->paths;
-    if (!p->checkpoint || !p->curves || !p->validation || !p->chart || !p->weights || !p->seconds)
-        return fail(MERLIN_NO_MEMORY, "out of memory");
-    bool exists = file_exists(p->checkpoint);
-    if (exists && !r->options->resume)
-        return fail(MERLIN_WRONG_USE, "%s holds a run already: add --resume to go on with it, or name another folder",
-                    folder);
-    if (!exists && r->options->resume) return fail(MERLIN_BAD_INPUT, "%s has no checkpoint to resume from", folder);
-    status s = check_kept(r);
-    if (s == OK && !exists && file_exists(p->weights))
-        s = fail(MERLIN_WRONG_USE, "%s are a run's whose checkpoint is gone: name another folder, or move them away",
-                 p->weights);
-    return s;
-}
-
 static bool is_lit_by_both(const run *r)
 {
-    return r->model.lighting == MODEL_LIGHT_BOTH;
+    return !is_nfps(r) && r->model.lighting == MODEL_LIGHT_BOTH;
 }
 
 static bool is_lit_by_any(const run *r)
@@ -139,10 +104,11 @@ static bool is_lit_by_any(const run *r)
 
 static status open_data(run *r)
 {
-    train_dataset_options options = {.size = r->training.size,
+    train_dataset_options options = {.size = r->training.size * (is_nfps(r) ? 2 : 1),
                                      .memory_gib = r->training.memory_gib,
                                      .environment = is_lit_by_both(r),
-                                     .lamps = is_lit_by_any(r)};
+                                     .lamps = is_lit_by_any(r),
+                                     .targets = is_nfps(r)};
     status s = train_dataset_open(r->options->data, &options, &r->data);
     if (s != OK) return s;
     size_t count = train_dataset_count(r->data), held_back = (size_t)r->training.validation_count;
@@ -194,8 +160,15 @@ static status build(run *r)
                           .purpose = NN_TRAIN,
                           .together = r->options->together};
     nn_adam_options adam = {(float)c->beta1, (float)c->beta2, 1e-8f, (float)c->clip_norm, (float)c->weight_decay};
-    train_source source = {r->data,  c, r->model.input_global, is_lit_by_both(r), is_lit_by_any(r), r->training_count,
-                           r->batch, 1};
+    train_source source = {.data = r->data,
+                           .config = c,
+                           .input_global = r->model.input_global,
+                           .environment = is_lit_by_both(r),
+                           .any = is_lit_by_any(r),
+                           .nfps = is_nfps(r),
+                           .training_count = r->training_count,
+                           .batch = r->batch,
+                           .pictures = 1};
     status s = model_build(&r->model, part_of(c), &r->graph);
     if (s == OK) s = nn_params_new(r->graph, (uint64_t)c->seed, &r->params);
     if (s == OK) s = load_weights(r->params, r->options);
@@ -273,7 +246,7 @@ static status begin(run *r)
     status s = ranks_agree(together, read_configuration(r));
     if (s != OK) return s;
     share_type(r);
-    if (is_first(r)) s = name_output(r);
+    if (is_first(r)) s = train_paths_new(r->options, &r->paths);
     if (s == OK) s = open_data(r);
     if (s == OK) s = build(r);
     r->resumed_at = r->saved_at = clock_seconds();

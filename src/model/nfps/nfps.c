@@ -87,9 +87,13 @@ static void add_loss(const stage *s, nn_node *normal)
     nn_masked_l2(s->g, normal, truth, mask, named(buffer, s->prefix, "normal"), 1.0f);
 }
 
-void nfps_build(nn_graph *g, const model_config *config, model_part part)
+status nfps_build(nn_graph *g, const model_config *config, model_part part)
 {
-    const bool both = part == MODEL_WHOLE || part == MODEL_TRAINING;
+    const bool trains = part == MODEL_TRAINING || part == MODEL_TRAINING_BRDF || part == MODEL_TRAINING_SSIM;
+    const bool both = part == MODEL_WHOLE || trains;
+    if (!both && part != MODEL_FIRST && part != MODEL_REFINE)
+        return fail(MERLIN_WRONG_USE,
+                    "model \"%s\" is for pictures under known lights, and makes no maps of photographs", config->name);
     const stage first = {g, both ? "first_" : "", "first", config->nfps_width, both ? 2 : 1, false},
                 refining = {g, "", "refine", config->nfps_width, 1, true};
     const stage *const stages[] = {&first, &refining};
@@ -98,6 +102,7 @@ void nfps_build(nn_graph *g, const model_config *config, model_part part)
         if (part == (i == 0 ? MODEL_REFINE : MODEL_FIRST)) continue;
         nn_node *normal = add_stage(stages[i]);
         nn_output(g, normal, named(buffer, stages[i]->prefix, "normal"));
-        if (part == MODEL_TRAINING) add_loss(stages[i], normal);
+        if (trains) add_loss(stages[i], normal);
     }
+    return OK;
 }

@@ -25,7 +25,8 @@
 
 enum { NFPS_PICTURE = 4, NFPS_LIGHT = 5 };
 
-/* Builds the network's part into g: MODEL_WHOLE, MODEL_TRAINING, MODEL_FIRST or MODEL_REFINE. */
-void nfps_build(nn_graph *g, const model_config *config, model_part part);
+/* Builds the network's part into g: MODEL_WHOLE, MODEL_TRAINING (of any losses), MODEL_FIRST or MODEL_REFINE;
+ * MERLIN_WRONG_USE for those that only networks of one photograph have. */
+status nfps_build(nn_graph *g, const model_config *config, model_part part);
 
 #endif

@@ -6,6 +6,7 @@
 
 #include "base/number.h"
 #include "model/nfps/nfps.h"
+#include "optics/led.h"
 
 /* Limits: a light's strength relative to the mean, below which a picture says little and would be raised to noise; the
  * brightest highlight over the mean; a pixel's light over its root mean square in all pictures, and what is added to
@@ -19,8 +20,7 @@ vec3 nfps_light_at(const nfps_light *light, vec3 point, float *strength)
     const vec3 way = vec3_sub(light->at, point);
     const float squared = fmaxf(vec3_dot(way, way), 1e-12f), far = sqrtf(squared);
     const vec3 toward = vec3_scale(way, 1 / far);
-    *strength = 1 / squared;
-    if (light->lobe > 0) *strength *= powf(fmaxf(-vec3_dot(toward, light->axis), 1e-8f), light->lobe);
+    *strength = led_share(light->axis, light->lobe, toward) / squared;
     return toward;
 }
 

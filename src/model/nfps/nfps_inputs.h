@@ -32,8 +32,8 @@ typedef struct nfps_scene {
     bool estimated;          /* the lights are estimates, off by several degrees */
 } nfps_scene;
 
-/* Returns the direction from a point to a light, unit, and the light's strength there: max(−l·d, 1e-8)^lobe / r² for
- * the direction l, the axis d and the distance r (Lichy et al. 2022), 1 of a distant light. */
+/* Returns the direction from a point to a light, unit, and the light's strength there: an LED's share (optics/led.h)
+ * over the squared distance; 1 of a distant light. */
 vec3 nfps_light_at(const nfps_light *light, vec3 point, float *strength);
 
 /* Turns a vector by the smallest rotation that takes the unit vector `view` (z > -1) to (0, 0, 1), and back. */

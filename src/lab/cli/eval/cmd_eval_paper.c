@@ -84,6 +84,7 @@ static const char help3[] =
     "pictures that each of several weights relit: by the maps' BRDF, and by its network where it is Sang's.\n\n"
     "  --data DIR         samples with many targets, or captures (merlin-lab eval stereo --help)\n"
     "  --method universal a judge more: a network that sees the pictures of a draw together, lights unknown\n"
+    "  --nfps W           a judge more: weights of the network of near lights (configs/runs/merlin-nfps)\n"
     "  --count N          only the first N objects\n"
     "  --draws N          only the first N of the five draws\n"
     "      --json         report on standard output as JSON\n"
@@ -102,6 +103,7 @@ static status parse3(int argc, char **argv, request3 *r)
     const cli_option options[] = {
         {"data", .text = &r->options.stereo.data},
         {"method", .text = &r->method},
+        {"nfps", .text = &r->options.stereo.nfps},
         {"count", .count = &r->options.stereo.count, .low = 1, .high = 1000000},
         {"draws", .integer = &r->options.stereo.draws, .low = 1, .high = SUBSETS},
         {"json", .flag = &r->json},

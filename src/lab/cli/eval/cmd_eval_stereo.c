@@ -23,6 +23,7 @@ static const char help[] =
     "  --model W          weights to measure (default: $MERLIN_MODEL, else merlin-point)\n"
     "  --method universal two rows more: by a network that sees the pictures of a draw together, lights unknown, as\n"
     "                     merlin stereo does (merlin-any and merlin-several)\n"
+    "  --nfps W           two rows more: by weights of the network of near lights (configs/runs/merlin-nfps)\n"
     "  --count N          only the first N objects\n"
     "  --draws N          only the first N of the five draws\n"
     "  --figure F.png     a picture of the normals and where they are off\n"
@@ -45,6 +46,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"data", .text = &r->options.data},
         {"model", .text = &r->model},
         {"method", .text = &r->method},
+        {"nfps", .text = &r->options.nfps},
         {"count", .count = &r->options.count, .low = 1, .high = 100000000},
         {"draws", .integer = &r->options.draws, .low = 1, .high = SUBSETS},
         {"figure", .picture = &r->options.figure},

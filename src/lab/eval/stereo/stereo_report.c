@@ -94,10 +94,17 @@ void stereo_table_print(const stereo_table *t, FILE *stream)
         stereo_table_print_row(t, STEREO_RELIT_UNIVERSAL, "  relit images", stream);
         stereo_table_print_row(t, STEREO_REAL_UNIVERSAL, "  real images", stream);
     }
+    const bool nfps = !isnan(stereo_table_mean(t, STEREO_RELIT_NFPS));
+    if (nfps) {
+        fputs("nfps, lights known\n", stream);
+        stereo_table_print_row(t, STEREO_RELIT_NFPS, "  relit images", stream);
+        stereo_table_print_row(t, STEREO_REAL_NFPS, "  real images", stream);
+    }
     fputc('\n', stream);
     print_comparison(t, STEREO_RELIT, "relit images", stream);
     print_comparison(t, STEREO_RELIT_UNCALIBRATED, "relit images, uncalibrated,", stream);
     if (universal) print_comparison(t, STEREO_RELIT_UNIVERSAL, "relit images, universal,", stream);
+    if (nfps) print_comparison(t, STEREO_RELIT_NFPS, "relit images, nfps,", stream);
     fprintf(stream, "%.1f s\n", t->seconds);
 }
 
@@ -109,7 +116,9 @@ static const char *const keys[STEREO_ROWS] = {"single_image",
                                               "relit_images_uncalibrated",
                                               "real_images_uncalibrated",
                                               "relit_images_universal",
-                                              "real_images_universal"};
+                                              "real_images_universal",
+                                              "relit_images_nfps",
+                                              "real_images_nfps"};
 
 static void add_number(cJSON *o, const char *key, double value)
 {

@@ -14,13 +14,26 @@ typedef enum stereo_row {
     STEREO_RELIT_UNIVERSAL, /* from relit pictures seen together by a network, lights unknown (merlin_maps_from_capture)
                              */
     STEREO_REAL_UNIVERSAL,
+    STEREO_RELIT_NFPS, /* by the network of near lights, lights known (photo_stereo/nfps_stereo.h) */
+    STEREO_REAL_NFPS,
     STEREO_ROWS
 } stereo_row;
 
 /* Tells whether a row is of real pictures. */
 static inline bool stereo_row_is_real(stereo_row row)
 {
-    return row == STEREO_REAL || row == STEREO_REAL_UNCALIBRATED || row == STEREO_REAL_UNIVERSAL;
+    return row == STEREO_REAL || row == STEREO_REAL_UNCALIBRATED || row == STEREO_REAL_UNIVERSAL ||
+           row == STEREO_REAL_NFPS;
+}
+
+static inline bool stereo_row_is_universal(stereo_row row)
+{
+    return row == STEREO_RELIT_UNIVERSAL || row == STEREO_REAL_UNIVERSAL;
+}
+
+static inline bool stereo_row_is_nfps(stereo_row row)
+{
+    return row == STEREO_RELIT_NFPS || row == STEREO_REAL_NFPS;
 }
 
 #endif

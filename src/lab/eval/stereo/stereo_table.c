@@ -12,6 +12,7 @@
 #include "lab/eval/stereo/stereo_object.h"
 #include "lab/eval/stereo/stereo_sheet.h"
 #include "merlin/surface.h"
+#include "photo_stereo/nfps_stereo.h"
 #include "photo_stereo/relit.h"
 #include "photo_stereo/subsets.h"
 #include "stereo/integrate/surface_error.h"
@@ -19,6 +20,7 @@
 typedef struct evaluation {
     const stereo_options *options;
     merlin_model *model, *judge; /* judge: of the universal rows, or NULL */
+    nfps_network *nfps;          /* of the rows of nfps, or NULL */
     merlin_relighting how;
     sheet_rows *sheet; /* or NULL */
     progress bar;
@@ -78,9 +80,24 @@ static status see_subset(const evaluation *e, const merlin_capture *from, int su
     return result;
 }
 
+/* Computes a subset's normals by the network of near lights. */
+static status solve_by_nfps(const evaluation *e, const merlin_capture *from, int subset, img *normal)
+{
+    merlin_capture some;
+    img depth = {0};
+    const watch asked = {.stop = e->options->stopped};
+    status result = subset_new(from, subset, &some);
+    if (result != OK) return result;
+    result = nfps_stereo(e->nfps, &some, &(nfps_options){.watch = &asked}, normal, &depth);
+    img_free(&depth);
+    subset_free(&some);
+    return result;
+}
+
 static status solve_normals(const evaluation *e, stereo_row row, const merlin_capture *from, int subset, img *normal)
 {
-    if (row >= STEREO_RELIT_UNIVERSAL) return see_subset(e, from, subset, normal);
+    if (stereo_row_is_universal(row)) return see_subset(e, from, subset, normal);
+    if (stereo_row_is_nfps(row)) return solve_by_nfps(e, from, subset, normal);
     merlin_stereo_method method = row >= STEREO_RELIT_UNCALIBRATED ? MERLIN_STEREO_UNCALIBRATED : MERLIN_STEREO_AUTO;
     merlin_surface found;
     status result = subset_solve(from, subset, method, &found);
@@ -141,9 +158,11 @@ static status evaluate_subject(evaluation *e, subject *s, const char *path)
     result = estimate(e, s);
     const merlin_capture *made = &s->relit.capture, *taken = &s->object.capture;
     for (int row = STEREO_RELIT; row < STEREO_ROWS; row++) {
-        const bool is_real = stereo_row_is_real((stereo_row)row), universal = row >= STEREO_RELIT_UNIVERSAL;
+        const bool is_real = stereo_row_is_real((stereo_row)row);
+        const bool unasked = (stereo_row_is_universal((stereo_row)row) && !e->judge) ||
+                             (stereo_row_is_nfps((stereo_row)row) && !e->nfps);
         s->column->row[row].error = (double)NAN;
-        if (result != OK || (is_real && e->options->relit_only) || (universal && !e->judge)) continue;
+        if (result != OK || (is_real && e->options->relit_only) || unasked) continue;
         result = solve_subsets(e, s, (stereo_row)row, is_real ? taken : made);
     }
     if (result == OK && e->sheet) result = stereo_sheet_add(e->sheet, &s->object, s->shown);
@@ -153,7 +172,7 @@ static status evaluate_subject(evaluation *e, subject *s, const char *path)
 static status evaluate_all(evaluation *e, char **path, stereo_table *out)
 {
     status s = OK;
-    const int rows = (e->judge ? 6 : 4) / (e->options->relit_only ? 2 : 1);
+    const int rows = (4 + (e->judge ? 2 : 0) + (e->nfps ? 2 : 0)) / (e->options->relit_only ? 2 : 1);
     const size_t solutions = (size_t)(rows * out->draws);
     progress_begin(&e->bar, "photometric stereo", "solutions", 0, out->count * solutions, e->options->quiet);
     for (size_t i = 0; i < out->count && s == OK; i++) {
@@ -175,12 +194,14 @@ static status run_listed(const stereo_options *options, char **path, stereo_tabl
     if (s == OK) snprintf(out->model, sizeof out->model, "%s", merlin_model_name(e.model));
     if (s == OK && network_config(e.model->network)->rival == MODEL_SANG) e.how = MERLIN_BY_NETWORK;
     if (s == OK && options->judge) s = model_open_several(options->judge, options->several, &e.judge);
+    if (s == OK && options->nfps) s = nfps_network_open(options->nfps, &e.nfps);
     if (s == OK && options->figure) s = stereo_sheet_new(out->count, &e.sheet);
     if (s == OK) s = evaluate_all(&e, path, out);
     if (s == OK && e.sheet) s = sheet_rows_write(e.sheet, options->figure);
     sheet_rows_free(e.sheet);
     merlin_model_close(e.model);
     merlin_model_close(e.judge);
+    nfps_network_close(e.nfps);
     return s;
 }
 

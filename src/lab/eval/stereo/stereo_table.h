@@ -48,6 +48,7 @@ typedef struct stereo_options {
     const char *data, *weights, *flash; /* flash: weights for what is seen as a flash alone, or NULL */
     const char *judge, *several; /* weights of the universal rows: merlin_model_open's and _add_several's (may be NULL);
                                   * judge NULL: without these rows */
+    const char *nfps;            /* weights of the rows of nfps; NULL: without these rows */
     bool relit_only;             /* without the rows of real pictures, which are the same for all weights */
     size_t count;                /* the first so many objects; 0: all */
     int draws;                   /* the first so many of the SUBSETS draws; 0: all */

@@ -91,22 +91,38 @@ static size_t packed_bytes(const train_dataset *d, size_t count, int lamps)
     return sizeof(packed) + count * (d->values + 2 + (size_t)lamps * TRAIN_LAMP_VALUES) * sizeof(uint16_t);
 }
 
-/* Stores a lamp's light of all bounces, and its visibility. */
-static uint16_t *put_lamp(uint16_t *to, const sample_lamp *from, size_t i)
+/* Stores light of all bounces, and its visibility. */
+static uint16_t *put_lit(uint16_t *to, const img *direct, const img *indirect, float visibility, size_t i)
 {
     float sum[3];
     for (size_t c = 0; c < 3; c++)
-        sum[c] = fminf(from->direct.data[3 * i + c] + from->indirect.data[3 * i + c], 65504.0f); /* the largest half */
+        sum[c] = fminf(direct->data[3 * i + c] + indirect->data[3 * i + c], 65504.0f); /* the largest half */
     to = put3(to, sum);
-    *to++ = float_to_half(from->visibility.data[i]);
+    *to++ = float_to_half(visibility);
     return to;
 }
 
-static void describe(const sample *s, int lamps, packed *p)
+static uint16_t *put_lamp(const train_dataset *d, uint16_t *to, const sample *s, int k, size_t i)
+{
+    if (d->options.targets) return put_lit(to, &s->targets[k].direct, &s->targets[k].indirect, 1, i);
+    const sample_lamp *l = &s->lamps[k];
+    return put_lit(to, &l->direct, &l->indirect, l->visibility.data[i], i);
+}
+
+/* Returns how many of the sample's lamps, or targets, are kept. */
+static int count_lamps(const train_dataset *d, const sample *s)
+{
+    const int count = d->options.targets ? s->target_count : d->options.lamps ? s->lamp_count : 0;
+    return count < TRAIN_LAMPS ? count : TRAIN_LAMPS;
+}
+
+static void describe(const train_dataset *d, const sample *s, int lamps, packed *p)
 {
     p->lamp_count = lamps;
     for (int k = 0; k < lamps; k++)
-        p->lamp[k] = (train_lamp){s->lamps[k].at, s->lamps[k].distant};
+        p->lamp[k] = d->options.targets
+                         ? (train_lamp){s->targets[k].light, false, s->targets[k].axis, s->targets[k].lobe}
+                         : (train_lamp){s->lamps[k].at, s->lamps[k].distant, {0, 0, 0}, 0};
     p->fov = s->fov;
     p->slant = s->slant;
     memcpy(p->sh, s->sh, sizeof p->sh);
@@ -117,11 +133,11 @@ static packed *pack(const train_dataset *d, const sample *s)
     size_t count = 0, pixels = (size_t)s->mask.width * (size_t)s->mask.height;
     for (size_t i = 0; i < pixels; i++)
         count += s->mask.data[i] > 0;
-    const int most = s->lamp_count < TRAIN_LAMPS ? s->lamp_count : TRAIN_LAMPS, lamps = d->options.lamps ? most : 0;
+    const int lamps = count_lamps(d, s);
     packed *p = calloc(1, packed_bytes(d, count, lamps));
     if (!p) return NULL;
     p->count = (uint32_t)count;
-    describe(s, lamps, p);
+    describe(d, s, lamps, p);
     uint16_t *place = p->data, *value = p->data + 2 * count;
     for (size_t i = 0; i < pixels; i++) {
         if (!(s->mask.data[i] > 0)) continue;
@@ -134,9 +150,9 @@ static packed *pack(const train_dataset *d, const sample *s)
         *value++ = float_to_half(s->roughness.data[i]);
         *value++ = float_to_half(s->depth.data[i]);
         *value++ = float_to_half(s->mask.data[i]);
-        if (s->env.data) value = put3(value, s->env.data + 3 * i);
+        if (d->values == VALUES_WITH_ENVIRONMENT) value = put3(value, s->env.data + 3 * i);
         for (int k = 0; k < lamps; k++)
-            value = put_lamp(value, &s->lamps[k], i);
+            value = put_lamp(d, value, s, k, i);
     }
     return p;
 }
@@ -159,11 +175,13 @@ static status check_optics(const char *path, const sample *s, bool any_lens)
 
 static status read_layers(const train_dataset *d, const char *path, sample *out)
 {
-    if (!d->options.lamps)
+    if (!d->options.lamps && !d->options.targets)
         return d->options.environment ? sample_read_training_environment(path, out) : sample_read_training(path, out);
     status s = sample_read(path, out);
-    if (s != OK || (out->lamp_count > 0 && out->env.data)) return s;
+    if (s != OK || (d->options.targets ? out->target_count > 0 : out->lamp_count > 0 && out->env.data)) return s;
     sample_free(out);
+    if (d->options.targets)
+        return fail(MERLIN_BAD_INPUT, "%s was rendered without targets: render samples with --targets or --leds", path);
     return fail(MERLIN_BAD_INPUT, "%s was rendered without lamps or without environment: render samples with --lamps",
                 path);
 }
@@ -178,7 +196,7 @@ static status read_packed(train_dataset *d, size_t i, packed **out)
         s = fail(MERLIN_BAD_INPUT, "%s is %d×%d pixels, the training configuration wants %d×%d", d->paths[i],
                  one.mask.width, one.mask.height, size, size);
     else
-        s = check_optics(d->paths[i], &one, d->options.lamps);
+        s = check_optics(d->paths[i], &one, d->options.lamps || d->options.targets);
     if (s == OK) {
         *out = pack(d, &one);
         if (!*out) s = fail(MERLIN_NO_MEMORY, "out of memory reading %s", d->paths[i]);
@@ -247,6 +265,7 @@ static void unpack_lights(const packed *p, int orientation, train_view *v)
     for (int k = 0; k < p->lamp_count; k++) {
         v->lamp[k] = p->lamp[k];
         turn_vector(orientation, &v->lamp[k].at);
+        turn_vector(orientation, &v->lamp[k].axis);
     }
 }
 

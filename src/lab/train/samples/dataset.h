@@ -21,10 +21,12 @@
 
 typedef struct train_dataset train_dataset;
 
-/* Properties of a sample's lamp. */
+/* Properties of a sample's lamp, or of a target's light. */
 typedef struct train_lamp {
     vec3 at; /* as in sample_lamp */
     bool distant;
+    vec3 axis; /* as in sample_target */
+    float lobe;
 } train_lamp;
 
 /* Lamps of a sample that are read, and values of each at a pixel. */
@@ -43,7 +45,7 @@ typedef struct train_view {
     /* of a data set with environments, else NULL: */
     float *env; /* 3, the object under its environment alone */
     float *sh;  /* 27 values: that environment; model_encode_sh of it after train_prepare */
-    /* of a data set with lamps, else NULL: */
+    /* of a data set with lamps or targets, else NULL: */
     float *lamps; /* TRAIN_LAMPS images of TRAIN_LAMP_VALUES: the object under each, bounces included, and its
                    * visibility */
     train_lamp lamp[TRAIN_LAMPS];
@@ -66,6 +68,7 @@ typedef struct train_dataset_options {
     double memory_gib; /* samples are kept in memory until they fill this */
     bool environment;  /* also read images under environments; samples without are refused */
     bool lamps;        /* also read those and images under lamps, through any lens; samples without are refused */
+    bool targets; /* read the targets instead, whose visibility is 1, through any lens; samples without are refused */
 } train_dataset_options;
 
 /* Opens a folder of samples. Refuses an empty one. */

@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "lab/train/samples/mixture.h"
 #include "lab/train/samples/motion.h"
+#include "lab/train/samples/nfps_batch.h"
 #include "lab/train/samples/prepare.h"
 #include "optics/orientation.h"
 
@@ -27,6 +28,7 @@ struct train_loader {
     float *light_code;     /* the program's input "light", or NULL */
     float *shares;         /* its input "share", or NULL */
     const float *images;   /* its input "image" */
+    nfps_batch *near;      /* inputs of the network of near lights, or NULL */
     float *spare[BUFFERS]; /* for targets that are no inputs of the model */
 };
 
@@ -70,6 +72,7 @@ static const field fields[BUFFERS] = {
 /* Returns how many of them this kind of training has. */
 static int buffer_count(const train_source *source)
 {
+    if (source->nfps) return 0;
     if (source->any) return BUFFERS;
     return source->environment ? BOTH_BUFFERS : POINT_BUFFERS;
 }
@@ -103,7 +106,10 @@ status train_loader_new(nn_program *program, const train_source *source, train_l
     status s = l->items ? OK : fail(MERLIN_NO_MEMORY, "out of memory for a batch");
     for (int i = 0; i < buffer_count(source) && s == OK; i++)
         s = connect(l, program, i);
-    l->light_code = nn_input_data(program, "light");
+    if (s == OK && source->nfps)
+        s = nfps_batch_new(program, source->config->size, source->pictures, l->batch / (size_t)source->pictures,
+                           &l->near);
+    l->light_code = source->nfps ? NULL : nn_input_data(program, "light");
     l->shares = nn_input_data(program, "share");
     l->images = nn_input_data(program, "image");
     if (s != OK) {
@@ -119,6 +125,7 @@ void train_loader_free(train_loader *l)
     if (!l) return;
     for (int i = 0; i < BUFFERS; i++)
         free(l->spare[i]);
+    nfps_batch_free(l->near);
     free(l->items);
     free(l);
 }
@@ -220,6 +227,16 @@ static status fill_item(void *context, size_t i)
     return s == OK ? train_prepare(&it->view, l->source.input_global, &lens, &lighting, &r) : s;
 }
 
+/* Prepares an object for the network of near lights. */
+static status fill_near(void *context, size_t object)
+{
+    train_loader *l = context;
+    const item *it = &l->items[object * (size_t)l->source.pictures];
+    rng r = rng_at(seed_of(l), 2 * it->first + l->validation, TRAIN_STREAM_NFPS);
+    const int orientation = l->validation ? 0 : rng_below(&r, ORIENTATIONS);
+    return nfps_batch_fill(l->near, object, l->source.data, it->sample, orientation, &r);
+}
+
 /* Fills in an object's "share", once its pictures are there. */
 static void fill_shares(void *context, size_t object)
 {
@@ -231,6 +248,7 @@ static void fill_shares(void *context, size_t object)
 
 static status fill(train_loader *l)
 {
+    if (l->near) return parallel_try(l->batch / (size_t)l->source.pictures, fill_near, l);
     status s = parallel_try(l->batch, fill_item, l);
     if (s != OK) return s;
     if (l->shares) parallel_for(l->batch / (size_t)l->source.pictures, fill_shares, l);

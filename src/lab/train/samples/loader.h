@@ -16,6 +16,7 @@ typedef struct train_source {
     bool input_global;
     bool environment; /* setting B; the data set has environments */
     bool any;         /* any light, any lens; the data set has lamps */
+    bool nfps;        /* the network of near lights; the data set has targets, and twice the configuration's size */
     size_t training_count;
     int batch;    /* of the program: a rank's share of the configuration's */
     int pictures; /* of each object: consecutive presentations show the first one's sample, each in its own light */

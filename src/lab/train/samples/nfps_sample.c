@@ -192,21 +192,21 @@ static void flatten_depth(const window *w)
 
 /* ---- lights and cameras ---- */
 
-static nfps_light light_known(const train_lamp *lamp, rng *r)
+static nfps_light light_known(const train_lamp *of, rng *r)
 {
     const vec3 error = vec3_make(rng_normal(r), rng_normal(r), rng_normal(r));
-    return (nfps_light){vec3_fma(lamp->at, KNOWN_PLACE, error), lamp->distant, lamp->axis, lamp->lobe};
+    return (nfps_light){vec3_fma(of->at, KNOWN_PLACE, error), of->distant, of->axis, of->lobe};
 }
 
-static nfps_light light_estimated(const train_lamp *lamp, rng *r)
+static nfps_light light_estimated(const train_lamp *of, rng *r)
 {
     static const vec3 middle = {0, 0, -1};
     const vec3 error = vec3_make(rng_normal(r), rng_normal(r), rng_normal(r));
     const float factor = expf(ESTIMATED_DISTANCE * rng_normal(r));
-    const vec3 way = lamp->distant ? lamp->at : vec3_sub(lamp->at, middle);
+    const vec3 way = of->distant ? of->at : vec3_sub(of->at, middle);
     const float far = vec3_length(way);
     const vec3 toward = vec3_normalize(vec3_fma(vec3_scale(way, 1 / far), ESTIMATED_DIRECTION, error));
-    if (lamp->distant) return (nfps_light){.at = toward, .distant = true};
+    if (of->distant) return (nfps_light){.at = toward, .distant = true};
     return (nfps_light){.at = vec3_fma(middle, far * factor, toward)};
 }
 
@@ -258,8 +258,8 @@ static capture capture_draw(const train_view *v, int pictures, rng *r)
     capture c = {.pictures = pictures, .estimated = rng_uniform(r) < ESTIMATED};
     choose(v, r, pictures, c.chosen);
     for (int k = 0; k < pictures; k++) {
-        const train_lamp *lamp = &v->lamp[c.chosen[k]];
-        c.light[k] = c.estimated ? light_estimated(lamp, r) : light_known(lamp, r);
+        const train_lamp *of = &v->lamp[c.chosen[k]];
+        c.light[k] = c.estimated ? light_estimated(of, r) : light_known(of, r);
         c.gain[k] = expf((c.estimated ? ESTIMATED_STRENGTH : KNOWN_STRENGTH) * rng_normal(r));
     }
     c.white = expf(rng_range(r, logf(3), logf(30)));

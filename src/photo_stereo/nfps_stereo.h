@@ -1,0 +1,27 @@
+/* SPDX-License-Identifier: MIT */
+/* Photometric stereo under known near lights by a network (model/nfps/nfps.h): normals at a coarse scale, and at each
+ * finer one better ones from them and from the depth that they integrate to.
+ *
+ *     nfps_network *n;
+ *     status s = nfps_network_open("merlin-nfps.safetensors", &n);
+ *     if (s == OK) s = nfps_stereo(n, &capture, &(nfps_options){0}, &normal, &depth);
+ */
+#ifndef MERLIN_PHOTO_STEREO_NFPS_STEREO_H
+#define MERLIN_PHOTO_STEREO_NFPS_STEREO_H
+
+#include "photo_stereo/nfps_network.h"
+#include "stereo/capture/capture.h"
+
+typedef struct nfps_options {
+    bool estimated;     /* the lights are estimates, off by several degrees */
+    const watch *watch; /* may be NULL */
+} nfps_options;
+
+/* Makes normals (3 channels, unit) and depth (1 channel) of the pictures' size, zero outside the mask, from a capture's
+ * lights, of which at most NN_LARGEST_GROUP are used, evenly chosen. Depth is in the unit of the camera's distance; if
+ * that is unknown it is taken to be the lights'. MERLIN_WRONG_USE for unknown lights and a camera far away,
+ * MERLIN_BAD_INPUT for fewer than 2 pictures, MERLIN_STOPPED, MERLIN_NO_MEMORY. */
+status nfps_stereo(const nfps_network *n, const merlin_capture *c, const nfps_options *options, img *normal,
+                   img *depth);
+
+#endif
