@@ -3,7 +3,8 @@
 #ifndef MERLIN_LAB_TRAIN_TRAIN_PATHS_H
 #define MERLIN_LAB_TRAIN_TRAIN_PATHS_H
 
-#include "lab/train/train.h"
+#include "base/status.h"
+#include "lab/train/train_options.h"
 
 typedef struct train_paths {
     char *checkpoint, *curves, *validation, *chart, *weights, *seconds;
