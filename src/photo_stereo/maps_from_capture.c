@@ -8,6 +8,7 @@
 #include "base/api_needs.h"
 #include "estimate/photo/estimate.h"
 #include "estimate/photo/model_pair.h"
+#include "merlin/lights.h"
 #include "photo_stereo/align_pictures.h"
 #include "photo_stereo/further_light.h"
 #include "photo_stereo/maps_from_capture.h"
@@ -213,6 +214,38 @@ static status note_pictures(const merlin_capture *c, const picture_shifts *shift
     status s = pst_doubt_pictures(c, maps->noticed);
     note_shifts(c, shifts, maps->noticed);
     skipped_warn(&c->skipped, maps->noticed);
+    return s;
+}
+
+/* Returns the position of the light that a network tells: `far` camera distances from the object's middle at most. */
+static vec3 place_of(const merlin_maps *maps, const float told[MODEL_LIGHTS], float distance)
+{
+    static const float far = 5;
+    const vec3 toward = vec3_normalize(vec3_of(told + MODEL_LIGHTS_LAMP));
+    float place[3];
+    vec3_put(
+        vec3_scale(vec3_fma(vec3_make(0, 0, -1), 1 / fmaxf(told[MODEL_LIGHTS_DISTANCE], 1 / far), toward), distance),
+        place);
+    merlin_maps_lens_place(maps, place, place);
+    return vec3_of(place);
+}
+
+status lights_of_capture(merlin_model *model, const merlin_capture *capture, int (*stop)(void), merlin_light *lights)
+{
+    seen pictures = choose(capture);
+    pictures.compares = model->several != NULL;
+    if (!pictures.compares) return fail(MERLIN_WRONG_USE, "the model tells no lights by comparing pictures");
+    if (pictures.count < capture->count)
+        return fail(MERLIN_WRONG_USE, "the lights of %d pictures are told at once, not of %d", SEEN, capture->count);
+    merlin_params params = merlin_params_default();
+    merlin_maps maps = {0};
+    params.stop = stop;
+    params.views = 1;
+    status s = estimate(model, &pictures, &params, &maps);
+    const float distance = capture->camera.distance > 0 ? capture->camera.distance : 1;
+    for (int i = 0; i < pictures.count && s == OK; i++)
+        vec3_put(place_of(&maps, pictures.compared[i], distance), lights[i].position);
+    merlin_maps_free(&maps);
     return s;
 }
 

@@ -39,7 +39,8 @@ static const struct {
 } judges[] = {{"near, lights known", STEREO_RELIT, STEREO_REAL},
               {"uncalibrated", STEREO_RELIT_UNCALIBRATED, STEREO_REAL_UNCALIBRATED},
               {"universal", STEREO_RELIT_UNIVERSAL, STEREO_REAL_UNIVERSAL},
-              {"nfps, lights known", STEREO_RELIT_NFPS, STEREO_REAL_NFPS}};
+              {"nfps, lights known", STEREO_RELIT_NFPS, STEREO_REAL_NFPS},
+              {"nfps, lights unknown", STEREO_RELIT_NFPS_UNCALIBRATED, STEREO_REAL_NFPS_UNCALIBRATED}};
 enum { JUDGES = sizeof judges / sizeof *judges };
 
 static void print_spreads(const paper3_table *t, int judge, FILE *stream)

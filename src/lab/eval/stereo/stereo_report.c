@@ -100,6 +100,11 @@ void stereo_table_print(const stereo_table *t, FILE *stream)
         stereo_table_print_row(t, STEREO_RELIT_NFPS, "  relit images", stream);
         stereo_table_print_row(t, STEREO_REAL_NFPS, "  real images", stream);
     }
+    if (nfps && universal) {
+        fputs("nfps, lights unknown\n", stream);
+        stereo_table_print_row(t, STEREO_RELIT_NFPS_UNCALIBRATED, "  relit images", stream);
+        stereo_table_print_row(t, STEREO_REAL_NFPS_UNCALIBRATED, "  real images", stream);
+    }
     fputc('\n', stream);
     print_comparison(t, STEREO_RELIT, "relit images", stream);
     print_comparison(t, STEREO_RELIT_UNCALIBRATED, "relit images, uncalibrated,", stream);
@@ -118,7 +123,9 @@ static const char *const keys[STEREO_ROWS] = {"single_image",
                                               "relit_images_universal",
                                               "real_images_universal",
                                               "relit_images_nfps",
-                                              "real_images_nfps"};
+                                              "real_images_nfps",
+                                              "relit_images_nfps_uncalibrated",
+                                              "real_images_nfps_uncalibrated"};
 
 static void add_number(cJSON *o, const char *key, double value)
 {

@@ -16,6 +16,8 @@ typedef enum stereo_row {
     STEREO_REAL_UNIVERSAL,
     STEREO_RELIT_NFPS, /* by the network of near lights, lights known (photo_stereo/nfps_stereo.h) */
     STEREO_REAL_NFPS,
+    STEREO_RELIT_NFPS_UNCALIBRATED, /* by the same with lights that a network tells (lights_of_capture) */
+    STEREO_REAL_NFPS_UNCALIBRATED,
     STEREO_ROWS
 } stereo_row;
 
@@ -23,7 +25,7 @@ typedef enum stereo_row {
 static inline bool stereo_row_is_real(stereo_row row)
 {
     return row == STEREO_REAL || row == STEREO_REAL_UNCALIBRATED || row == STEREO_REAL_UNIVERSAL ||
-           row == STEREO_REAL_NFPS;
+           row == STEREO_REAL_NFPS || row == STEREO_REAL_NFPS_UNCALIBRATED;
 }
 
 static inline bool stereo_row_is_universal(stereo_row row)
@@ -33,7 +35,13 @@ static inline bool stereo_row_is_universal(stereo_row row)
 
 static inline bool stereo_row_is_nfps(stereo_row row)
 {
-    return row == STEREO_RELIT_NFPS || row == STEREO_REAL_NFPS;
+    return row >= STEREO_RELIT_NFPS;
+}
+
+/* Tells whether a row wants the network that compares pictures. */
+static inline bool stereo_row_is_compared(stereo_row row)
+{
+    return stereo_row_is_universal(row) || row >= STEREO_RELIT_NFPS_UNCALIBRATED;
 }
 
 #endif

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/file.h"
 #include "base/progress.h"
@@ -12,6 +13,7 @@
 #include "lab/eval/stereo/stereo_object.h"
 #include "lab/eval/stereo/stereo_sheet.h"
 #include "merlin/surface.h"
+#include "photo_stereo/maps_from_capture.h"
 #include "photo_stereo/nfps_stereo.h"
 #include "photo_stereo/relit.h"
 #include "photo_stereo/subsets.h"
@@ -80,15 +82,28 @@ static status see_subset(const evaluation *e, const merlin_capture *from, int su
     return result;
 }
 
+/* Replaces the subset's lights by those that a network tells. They are near, of strengths that are known. */
+static status tell_lights(const evaluation *e, merlin_capture *some)
+{
+    status result = lights_of_capture(e->judge, some, e->options->stopped, some->light);
+    for (int k = 0; result == OK && k < some->count; k++) {
+        memset(some->light[k].direction, 0, sizeof some->light[k].direction);
+        some->light[k].lobe = 0;
+    }
+    return result;
+}
+
 /* Computes a subset's normals by the network of near lights. */
-static status solve_by_nfps(const evaluation *e, const merlin_capture *from, int subset, img *normal)
+static status solve_by_nfps(const evaluation *e, const merlin_capture *from, int subset, bool told, img *normal)
 {
     merlin_capture some;
     img depth = {0};
     const watch asked = {.stop = e->options->stopped};
     status result = subset_new(from, subset, &some);
     if (result != OK) return result;
-    result = nfps_stereo(e->nfps, &some, &(nfps_options){.watch = &asked}, normal, &depth);
+    if (told) result = tell_lights(e, &some);
+    if (result == OK)
+        result = nfps_stereo(e->nfps, &some, &(nfps_options){.estimated = told, .watch = &asked}, normal, &depth);
     img_free(&depth);
     subset_free(&some);
     return result;
@@ -97,7 +112,7 @@ static status solve_by_nfps(const evaluation *e, const merlin_capture *from, int
 static status solve_normals(const evaluation *e, stereo_row row, const merlin_capture *from, int subset, img *normal)
 {
     if (stereo_row_is_universal(row)) return see_subset(e, from, subset, normal);
-    if (stereo_row_is_nfps(row)) return solve_by_nfps(e, from, subset, normal);
+    if (stereo_row_is_nfps(row)) return solve_by_nfps(e, from, subset, stereo_row_is_compared(row), normal);
     merlin_stereo_method method = row >= STEREO_RELIT_UNCALIBRATED ? MERLIN_STEREO_UNCALIBRATED : MERLIN_STEREO_AUTO;
     merlin_surface found;
     status result = subset_solve(from, subset, method, &found);
@@ -159,8 +174,8 @@ static status evaluate_subject(evaluation *e, subject *s, const char *path)
     const merlin_capture *made = &s->relit.capture, *taken = &s->object.capture;
     for (int row = STEREO_RELIT; row < STEREO_ROWS; row++) {
         const bool is_real = stereo_row_is_real((stereo_row)row);
-        const bool unasked = (stereo_row_is_universal((stereo_row)row) && !e->judge) ||
-                             (stereo_row_is_nfps((stereo_row)row) && !e->nfps);
+        const bool unasked =
+            (stereo_row_is_compared((stereo_row)row) && !e->judge) || (stereo_row_is_nfps((stereo_row)row) && !e->nfps);
         s->column->row[row].error = (double)NAN;
         if (result != OK || (is_real && e->options->relit_only) || unasked) continue;
         result = solve_subsets(e, s, (stereo_row)row, is_real ? taken : made);
@@ -172,7 +187,8 @@ static status evaluate_subject(evaluation *e, subject *s, const char *path)
 static status evaluate_all(evaluation *e, char **path, stereo_table *out)
 {
     status s = OK;
-    const int rows = (4 + (e->judge ? 2 : 0) + (e->nfps ? 2 : 0)) / (e->options->relit_only ? 2 : 1);
+    const int rows =
+        (4 + (e->judge ? 2 : 0) + (e->nfps ? 2 : 0) + (e->judge && e->nfps ? 2 : 0)) / (e->options->relit_only ? 2 : 1);
     const size_t solutions = (size_t)(rows * out->draws);
     progress_begin(&e->bar, "photometric stereo", "solutions", 0, out->count * solutions, e->options->quiet);
     for (size_t i = 0; i < out->count && s == OK; i++) {
