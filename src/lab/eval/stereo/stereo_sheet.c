@@ -5,16 +5,29 @@
 
 #include "image/write/figure.h"
 
-enum { COLUMNS = 2 + 2 * STEREO_ROWS };
 static const float WHITE = 45;
 
-static const char *const labels[COLUMNS] = {
-    "photograph",    "normal, true", "single image", "off", "relit",        "off", "real",        "off",
-    "relit, uncal.", "off",          "real, uncal.", "off", "relit, univ.", "off", "real, univ.", "off"};
+static const char *const labels[STEREO_ROWS] = {"single image", "relit",          "real",         "relit, uncal.",
+                                                "real, uncal.", "relit, univ.",   "real, univ.",  "relit, nfps",
+                                                "real, nfps",   "relit, nfps u.", "real, nfps u."};
 
-status stereo_sheet_new(size_t objects, sheet_rows **out)
+status stereo_sheet_new(size_t objects, const bool asked[STEREO_ROWS], stereo_sheet *out)
 {
-    return sheet_rows_new(objects, COLUMNS, labels, out);
+    *out = (stereo_sheet){.labels = {"photograph", "normal, true"}};
+    size_t columns = 2;
+    for (int i = 0; i < STEREO_ROWS; i++) {
+        out->asked[i] = asked[i];
+        if (!asked[i]) continue;
+        out->labels[columns++] = labels[i];
+        out->labels[columns++] = "off";
+    }
+    return sheet_rows_new(objects, columns, out->labels, &out->rows);
+}
+
+void stereo_sheet_free(stereo_sheet *sheet)
+{
+    sheet_rows_free(sheet->rows);
+    *sheet = (stereo_sheet){.rows = NULL};
 }
 
 /* The angle to the truth; WHITE degrees are white. */
@@ -30,22 +43,26 @@ static status show_angle(const img *normal, const merlin_capture *c, img *out)
     return s;
 }
 
-status stereo_sheet_add(sheet_rows *sheet, const stereo_object *o, const img normal[STEREO_ROWS])
+/* Makes a row's two tiles, black without a solution. */
+static status show_row(const img *normal, const merlin_capture *c, img tile[2])
 {
-    img *row = sheet_rows_begin(sheet);
-    const merlin_capture *c = &o->capture;
-    if (!row) return OK;
-    status s = img_copy(&row[0], &o->photo);
-    if (s == OK) s = figure_normals(&c->normal_true, &c->mask, &row[1]);
-    for (int i = 0; i < STEREO_ROWS && s == OK; i++) {
-        if (!normal[i].data) {
-            s = img_new(&row[2 + 2 * i], c->width, c->height, 1);
-            if (s == OK) s = img_new(&row[3 + 2 * i], c->width, c->height, 1);
-            continue;
-        }
-        s = figure_normals(&normal[i], &c->mask, &row[2 + 2 * i]);
-        if (s == OK) s = show_angle(&normal[i], c, &row[3 + 2 * i]);
+    if (normal->data) {
+        status s = figure_normals(normal, &c->mask, &tile[0]);
+        return s == OK ? show_angle(normal, c, &tile[1]) : s;
     }
-    if (s == OK) sheet_rows_keep(sheet);
+    status s = img_new(&tile[0], c->width, c->height, 1);
+    return s == OK ? img_new(&tile[1], c->width, c->height, 1) : s;
+}
+
+status stereo_sheet_add(stereo_sheet *sheet, const stereo_object *o, const img normal[STEREO_ROWS])
+{
+    img *tile = sheet_rows_begin(sheet->rows);
+    const merlin_capture *c = &o->capture;
+    if (!tile) return OK;
+    status s = img_copy(&tile[0], &o->photo);
+    if (s == OK) s = figure_normals(&c->normal_true, &c->mask, &tile[1]);
+    for (int i = 0; i < STEREO_ROWS && s == OK; i++)
+        if (sheet->asked[i]) s = show_row(&normal[i], c, tile += 2);
+    if (s == OK) sheet_rows_keep(sheet->rows);
     return s;
 }

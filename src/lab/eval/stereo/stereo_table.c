@@ -24,7 +24,8 @@ typedef struct evaluation {
     merlin_model *model, *judge; /* judge: of the universal rows, or NULL */
     nfps_network *nfps;          /* of the rows of nfps, or NULL */
     merlin_relighting how;
-    sheet_rows *sheet; /* or NULL */
+    bool asked[STEREO_ROWS]; /* rows that are filled */
+    stereo_sheet sheet;      /* its rows: NULL without a figure */
     progress bar;
     size_t solved;
 } evaluation;
@@ -173,22 +174,19 @@ static status evaluate_subject(evaluation *e, subject *s, const char *path)
     result = estimate(e, s);
     const merlin_capture *made = &s->relit.capture, *taken = &s->object.capture;
     for (int row = STEREO_RELIT; row < STEREO_ROWS; row++) {
-        const bool is_real = stereo_row_is_real((stereo_row)row);
-        const bool unasked =
-            (stereo_row_is_compared((stereo_row)row) && !e->judge) || (stereo_row_is_nfps((stereo_row)row) && !e->nfps);
-        s->column->row[row].error = (double)NAN;
-        if (result != OK || (is_real && e->options->relit_only) || unasked) continue;
-        result = solve_subsets(e, s, (stereo_row)row, is_real ? taken : made);
+        if (result != OK || !e->asked[row]) continue;
+        result = solve_subsets(e, s, (stereo_row)row, stereo_row_is_real((stereo_row)row) ? taken : made);
     }
-    if (result == OK && e->sheet) result = stereo_sheet_add(e->sheet, &s->object, s->shown);
+    if (result == OK && e->sheet.rows) result = stereo_sheet_add(&e->sheet, &s->object, s->shown);
     return result;
 }
 
 static status evaluate_all(evaluation *e, char **path, stereo_table *out)
 {
     status s = OK;
-    const int rows =
-        (4 + (e->judge ? 2 : 0) + (e->nfps ? 2 : 0) + (e->judge && e->nfps ? 2 : 0)) / (e->options->relit_only ? 2 : 1);
+    int rows = 0;
+    for (int row = STEREO_RELIT; row < STEREO_ROWS; row++)
+        rows += e->asked[row];
     const size_t solutions = (size_t)(rows * out->draws);
     progress_begin(&e->bar, "photometric stereo", "solutions", 0, out->count * solutions, e->options->quiet);
     for (size_t i = 0; i < out->count && s == OK; i++) {
@@ -201,6 +199,16 @@ static status evaluate_all(evaluation *e, char **path, stereo_table *out)
     return s;
 }
 
+/* Chooses the rows by what there is to fill them. */
+static void ask(evaluation *e)
+{
+    for (int i = 0; i < STEREO_ROWS; i++) {
+        const stereo_row row = (stereo_row)i;
+        e->asked[i] = (!stereo_row_is_compared(row) || e->judge) && (!stereo_row_is_nfps(row) || e->nfps) &&
+                      (!stereo_row_is_real(row) || !e->options->relit_only);
+    }
+}
+
 static status run_listed(const stereo_options *options, char **path, stereo_table *out)
 {
     evaluation e = {.options = options, .how = RELIT_BY};
@@ -211,10 +219,11 @@ static status run_listed(const stereo_options *options, char **path, stereo_tabl
     if (s == OK && network_config(e.model->network)->rival == MODEL_SANG) e.how = MERLIN_BY_NETWORK;
     if (s == OK && options->judge) s = model_open_several(options->judge, options->several, &e.judge);
     if (s == OK && options->nfps) s = nfps_network_open(options->nfps, &e.nfps);
-    if (s == OK && options->figure) s = stereo_sheet_new(out->count, &e.sheet);
+    ask(&e);
+    if (s == OK && options->figure) s = stereo_sheet_new(out->count, e.asked, &e.sheet);
     if (s == OK) s = evaluate_all(&e, path, out);
-    if (s == OK && e.sheet) s = sheet_rows_write(e.sheet, options->figure);
-    sheet_rows_free(e.sheet);
+    if (s == OK && e.sheet.rows) s = sheet_rows_write(e.sheet.rows, options->figure);
+    stereo_sheet_free(&e.sheet);
     merlin_model_close(e.model);
     merlin_model_close(e.judge);
     nfps_network_close(e.nfps);
