@@ -174,6 +174,7 @@ static status evaluate_subject(evaluation *e, subject *s, const char *path)
     result = estimate(e, s);
     const merlin_capture *made = &s->relit.capture, *taken = &s->object.capture;
     for (int row = STEREO_RELIT; row < STEREO_ROWS; row++) {
+        s->column->row[row].error = (double)NAN;
         if (result != OK || !e->asked[row]) continue;
         result = solve_subsets(e, s, (stereo_row)row, stereo_row_is_real((stereo_row)row) ? taken : made);
     }
