@@ -54,6 +54,10 @@ static status open_later(const char *weights, network **out)
     n->type = nn_fastest_type();
     n->weights = strdup(weights);
     status s = n->weights ? model_load_config(weights, &n->config) : fail(MERLIN_NO_MEMORY, "no memory for a model");
+    if (s == OK && n->config.nfps_width)
+        s = fail(MERLIN_BAD_INPUT,
+                 "%s: model \"%s\" is for pictures under known lights, and makes no maps of photographs", weights,
+                 n->config.name);
     if (s != OK)
         network_close(n);
     else
@@ -76,10 +80,6 @@ status network_open_later(const char *weights, network **out)
     if (s == OK && (*out)->config.only_lights)
         s = fail(MERLIN_BAD_INPUT, "%s: model \"%s\" tells only the lights of several photographs, and makes no maps",
                  weights, (*out)->config.name);
-    if (s == OK && (*out)->config.nfps_width)
-        s = fail(MERLIN_BAD_INPUT,
-                 "%s: model \"%s\" is for pictures under known lights, and makes no maps of photographs", weights,
-                 (*out)->config.name);
     return keep_if(s, out);
 }
 

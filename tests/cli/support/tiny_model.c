@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* tiny_model FILE [several|sang|NAME]: weights of a tiny network of both decoders, or of several photographs, as random
- * as training begins with; or a rival's, which is not tiny; or of both decoders under another name. */
+/* tiny_model FILE [several|sang|nfps|NAME]: weights of a tiny network of both decoders, or of several photographs, as
+ * random as training begins with; or a rival's, which is not tiny; or of near lights; or of both decoders under another
+ * name. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,6 +26,7 @@ int main(int argc, char **argv)
                            .gi_widths = {8, 8, 8, 8, 8}};
     static const char sang[] = "{\"name\": \"sang\", \"rival\": \"sang\", \"cascades\": 1}";
     if (argc == 3) snprintf(config.name, sizeof config.name, "%s", argv[2]);
+    if (argc == 3 && strcmp(argv[2], "nfps") == 0) config = (model_config){.name = "nfps", .nfps_width = 8};
     if (argc == 3 && strcmp(argv[2], "sang") == 0 && model_config_parse(sang, strlen(sang), "sang", &config) != OK)
         return 1;
     nn_graph *g = NULL;

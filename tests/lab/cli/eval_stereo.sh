@@ -23,6 +23,16 @@ refuses 2 '40 targets and 25 LEDs: at most 64 together' "$MERLIN_LAB" render --c
 [[ -e none ]] && complain "a folder for refused options"
 succeeds '^usage' table --help
 
+# the network of near lights as a judge, and nowhere else
+"$TINY_MODEL" nfps.safetensors nfps
+succeeds '^nfps, lights known$' table --data near --count 1 --draws 1 --nfps nfps.safetensors --figure nfps.png
+[[ -s nfps.png ]] || complain "no figure with nfps"
+refuses 1 'is none for pictures under known lights' table --data near --nfps "$MERLIN_MODEL"
+refuses 1 'is for pictures under known lights' table --data near --model nfps.safetensors
+refuses 1 'is for pictures under known lights' "$MERLIN" estimate "$MERLIN_SOURCE_DIR/examples/demo.png" \
+    --model nfps.safetensors -o out
+refuses 2 'is for pictures under known lights' "$MERLIN_LAB" export nfps.safetensors -o onnx
+
 refuses 2 'data DIR is missing' table
 refuses 2 'unexpected argument' table --data near more
 refuses 2 'unknown option' table --data near --nonsense
