@@ -173,7 +173,8 @@ static status enlarge(const scale *from, scale *to)
 static void place_points(const scale *l)
 {
     for (size_t i = 0; i < (size_t)l->size * (size_t)l->size; i++) {
-        const float x = (float)(i % (size_t)l->size) + 0.5f, y = (float)(i / (size_t)l->size) + 0.5f;
+        const size_t column = i % (size_t)l->size, row = i / (size_t)l->size;
+        const float x = (float)column + 0.5f, y = (float)row + 0.5f;
         const vec3 ray = vec3_make((x - l->camera.x) / l->camera.focal, -(y - l->camera.y) / l->camera.focal, -1);
         vec3_put(vec3_scale(ray, l->depth.data[i]), l->point + 3 * i);
         vec3_put(vec3_scale(vec3_normalize(ray), -1), l->view + 3 * i);

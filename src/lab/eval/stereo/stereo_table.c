@@ -188,7 +188,7 @@ static status evaluate_all(evaluation *e, char **path, stereo_table *out)
     int rows = 0;
     for (int row = STEREO_RELIT; row < STEREO_ROWS; row++)
         rows += e->asked[row];
-    const size_t solutions = (size_t)(rows * out->draws);
+    const size_t solutions = (size_t)rows * (size_t)out->draws;
     progress_begin(&e->bar, "photometric stereo", "solutions", 0, out->count * solutions, e->options->quiet);
     for (size_t i = 0; i < out->count && s == OK; i++) {
         subject one = {.column = &out->object[i]};

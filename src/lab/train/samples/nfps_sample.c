@@ -28,6 +28,16 @@ typedef struct window {
     float *memory;
 } window;
 
+static size_t column_of(const window *w, size_t pixel)
+{
+    return pixel % (size_t)w->size;
+}
+
+static size_t row_of(const window *w, size_t pixel)
+{
+    return pixel / (size_t)w->size;
+}
+
 static status window_new(int size, int pictures, window *w)
 {
     const size_t n = (size_t)size * (size_t)size, k = (size_t)pictures;
@@ -47,7 +57,7 @@ static status window_new(int size, int pictures, window *w)
 /* Chooses `pictures` of the view's targets. */
 static void choose(const train_view *v, rng *r, int pictures, int *chosen)
 {
-    int order[TRAIN_LAMPS];
+    int order[TRAIN_LAMPS] = {0};
     for (int i = 0; i < v->lamp_count; i++)
         order[i] = i;
     for (int k = 0; k < pictures; k++) {
@@ -146,8 +156,7 @@ static void spoil_normals(const window *w, rng *r)
     blur(w, radius);
     for (size_t i = 0; i < w->pixels; i++) {
         if (!(w->mask[i] > 0.5f)) continue;
-        const float x = (float)(i % (size_t)w->size) / (float)w->size,
-                    y = (float)(i / (size_t)w->size) / (float)w->size;
+        const float x = (float)column_of(w, i) / (float)w->size, y = (float)row_of(w, i) / (float)w->size;
         vec3 normal = vec3_of(w->known + 3 * i), view = vec3_of(w->view + 3 * i);
         normal.x += noise_at(&n[0], x, y) + noise_at(&n[2], x, y);
         normal.y += noise_at(&n[1], x, y) + noise_at(&n[3], x, y);
@@ -176,8 +185,7 @@ static void spoil_depth(const window *w, rng *r)
     const noise n = noise_draw(r, WIDE_CELLS, DEPTH_ERROR * u);
     for (size_t i = 0; i < w->pixels; i++) {
         if (!(w->mask[i] > 0.5f)) continue;
-        const float x = (float)(i % (size_t)w->size) / (float)w->size,
-                    y = (float)(i / (size_t)w->size) / (float)w->size;
+        const float x = (float)column_of(w, i) / (float)w->size, y = (float)row_of(w, i) / (float)w->size;
         const float bend = right * (x - 0.5f) + down * (y - 0.5f) + noise_at(&n, x, y);
         w->depth[i] = expf(mean + relief * (logf(w->depth[i]) - mean) + bend);
     }
@@ -235,7 +243,7 @@ static float mean_light(const window *w, int pictures)
 static void place_views(const train_view *v, const window *w, bool points)
 {
     for (size_t i = 0; i < w->pixels; i++) {
-        const float x = (float)(i % (size_t)w->size) + 0.5f, y = (float)(i / (size_t)w->size) + 0.5f;
+        const float x = (float)column_of(w, i) + 0.5f, y = (float)row_of(w, i) + 0.5f;
         const vec3 ray =
             camera_point(&v->lens, (float)w->left + x * (float)w->factor, (float)w->top + y * (float)w->factor, 1);
         if (points)
