@@ -18,4 +18,15 @@ static inline real led_share(vec3 axis, real lobe, vec3 l)
     return pow(max_of(-vec3_dot(l, axis), 0), lobe);
 }
 
+/* Returns the unit direction from a point to an LED (or to a point light: lobe 0), and what arrives there of power 1:
+ * led_share over the squared distance. */
+static inline vec3 led_light_at(vec3 position, vec3 axis, real lobe, vec3 at, real *arriving)
+{
+    const vec3 to = vec3_sub(position, at);
+    const real squared = max_of(vec3_dot(to, to), (real)1e-12);
+    const vec3 toward = vec3_scale(to, 1 / sqrt(squared));
+    *arriving = 1 / squared * led_share(axis, lobe, toward);
+    return toward;
+}
+
 #endif

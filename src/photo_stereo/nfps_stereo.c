@@ -7,7 +7,7 @@
 
 #include "image/resize.h"
 #include "nn/nn.h"
-#include "stereo/fit/problem.h"
+#include "stereo/fit/field_fit.h"
 #include "stereo/integrate/integrate.h"
 
 /* Sides of the coarsest scale and of the largest; what is larger than that is enlarged from it. A scale that would be
@@ -20,6 +20,7 @@ typedef struct frame {
     const merlin_capture *capture;
     int left, top, side;
     int count, picture[NN_LARGEST_GROUP];
+    nfps_light light[NN_LARGEST_GROUP]; /* of those */
     float distance;
 } frame;
 
@@ -29,7 +30,6 @@ typedef struct scale {
     pinhole camera;
     img mask, normal, depth;
     float *images, *point, *view;
-    nfps_light light[NN_LARGEST_GROUP];
 } scale;
 
 static float lights_reach(const merlin_capture *c)
@@ -38,6 +38,11 @@ static float lights_reach(const merlin_capture *c)
     for (int k = 0; k < c->count; k++)
         sum += (double)vec3_length(vec3_of(c->light[k].position));
     return fmaxf((float)(sum / c->count), 1e-6f);
+}
+
+static nfps_light light_of(const merlin_light *from)
+{
+    return (nfps_light){vec3_of(from->position), false, vec3_normalize(vec3_of(from->direction)), from->lobe};
 }
 
 static status frame_of(const merlin_capture *c, frame *f)
@@ -52,8 +57,10 @@ static status frame_of(const merlin_capture *c, frame *f)
     f->left = (b.left + b.right + 1 - f->side) / 2;
     f->top = (b.top + b.bottom + 1 - f->side) / 2;
     f->count = c->count < NN_LARGEST_GROUP ? c->count : NN_LARGEST_GROUP;
-    for (int k = 0; k < f->count; k++)
+    for (int k = 0; k < f->count; k++) {
         f->picture[k] = (int)((size_t)k * (size_t)c->count / (size_t)f->count);
+        f->light[k] = light_of(&c->light[f->picture[k]]);
+    }
     f->distance = c->camera.distance > 0 ? c->camera.distance : lights_reach(c);
     return OK;
 }
@@ -90,42 +97,45 @@ static status cut(const frame *f, const img *map, int size, img *out)
     return s;
 }
 
-/* Returns a picture as floats of 3 channels, divided by its light's intensity, black outside the mask. */
-static status read_picture(const merlin_capture *c, int k, img *out)
+/* Returns a picture's square as floats of 3 channels, divided by its light's intensity, black outside the mask. */
+static status read_square(const frame *f, int k, img *out)
 {
-    status s = img_new(out, c->width, c->height, 3);
-    if (s != OK) return s;
-    const size_t pixels = (size_t)c->width * (size_t)c->height, channels = (size_t)c->channels;
+    const merlin_capture *c = f->capture;
+    const size_t channels = (size_t)c->channels;
     float factor[3];
+    status s = img_new(out, f->side, f->side, 3);
     for (size_t ch = 0; ch < 3; ch++) {
         const float e = c->intensities_known ? c->light[k].intensity[channels == 3 ? ch : 0] : 0;
         factor[ch] = 1 / (65535.0f * (e > 0 ? e : 1));
     }
-    for (size_t i = 0; i < pixels; i++)
-        for (size_t ch = 0; ch < 3 && c->mask.data[i] > 0.5f; ch++)
-            out->data[3 * i + ch] = factor[ch] * (float)c->picture[k][i * channels + (channels == 3 ? ch : 0)];
-    return OK;
-}
-
-static status cut_pictures(const frame *f, scale *l)
-{
-    const size_t values = 3 * (size_t)l->size * (size_t)l->size;
-    l->images = calloc((size_t)f->count * values, sizeof *l->images);
-    status s = l->images ? OK : fail(MERLIN_NO_MEMORY, "no memory for %d pictures", f->count);
-    for (int k = 0; k < f->count && s == OK; k++) {
-        img picture = {0}, small = {0};
-        s = read_picture(f->capture, f->picture[k], &picture);
-        if (s == OK) s = cut(f, &picture, l->size, &small);
-        if (s == OK) memcpy(l->images + (size_t)k * values, small.data, values * sizeof *small.data);
-        img_free(&picture);
-        img_free(&small);
-    }
+    for (int y = 0; y < f->side && s == OK; y++)
+        for (int x = 0; x < f->side; x++) {
+            const int column = f->left + x, row = f->top + y;
+            if (column < 0 || row < 0 || column >= c->width || row >= c->height) continue;
+            const size_t i = (size_t)row * (size_t)c->width + (size_t)column;
+            for (size_t ch = 0; ch < 3 && c->mask.data[i] > 0.5f; ch++)
+                img_at(out, x, y)[ch] = factor[ch] * (float)c->picture[k][i * channels + (channels == 3 ? ch : 0)];
+        }
     return s;
 }
 
-static nfps_light light_of(const merlin_light *from)
+/* Brings all pictures to all scales. */
+static status scale_pictures(const frame *f, scale *scales, int count)
 {
-    return (nfps_light){vec3_of(from->position), false, vec3_normalize(vec3_of(from->direction)), from->lobe};
+    status s = OK;
+    for (int k = 0; k < f->count && s == OK; k++) {
+        img square = {0};
+        s = read_square(f, f->picture[k], &square);
+        for (int i = 0; i < count && s == OK; i++) {
+            const size_t values = 3 * (size_t)scales[i].size * (size_t)scales[i].size;
+            img small = {0};
+            s = img_resize(&square, scales[i].size, scales[i].size, &small);
+            if (s == OK) memcpy(scales[i].images + (size_t)k * values, small.data, values * sizeof *small.data);
+            img_free(&small);
+        }
+        img_free(&square);
+    }
+    return s;
 }
 
 static status scale_new(const frame *f, int size, scale *l)
@@ -139,14 +149,13 @@ static status scale_new(const frame *f, int size, scale *l)
                           .x = (c->camera.x - (float)f->left) * ratio,
                           .y = (c->camera.y - (float)f->top) * ratio,
                           .distance = f->distance};
-    for (int k = 0; k < f->count; k++)
-        l->light[k] = light_of(&c->light[f->picture[k]]);
     status s = img_new(&l->normal, size, size, 3);
     if (s == OK) s = img_new(&l->depth, size, size, 1);
     if (s == OK) s = cut(f, &c->mask, size, &l->mask);
     for (size_t i = 0; s == OK && i < pixels; i++)
         l->mask.data[i] = l->mask.data[i] > 0.5f ? 1 : 0;
-    return s == OK ? cut_pictures(f, l) : s;
+    l->images = calloc((size_t)f->count * 3 * pixels, sizeof *l->images);
+    return s == OK && !l->images ? fail(MERLIN_NO_MEMORY, "no memory for %d pictures", f->count) : s;
 }
 
 /* Brings normals and depth of a coarser scale to this one's pixels. */
@@ -173,9 +182,7 @@ static status enlarge(const scale *from, scale *to)
 static void place_points(const scale *l)
 {
     for (size_t i = 0; i < (size_t)l->size * (size_t)l->size; i++) {
-        const size_t column = i % (size_t)l->size, row = i / (size_t)l->size;
-        const float x = (float)column + 0.5f, y = (float)row + 0.5f;
-        const vec3 ray = vec3_make((x - l->camera.x) / l->camera.focal, -(y - l->camera.y) / l->camera.focal, -1);
+        const vec3 ray = pst_ray(&l->camera, (int)(i % (size_t)l->size), (int)(i / (size_t)l->size));
         vec3_put(vec3_scale(ray, l->depth.data[i]), l->point + 3 * i);
         vec3_put(vec3_scale(vec3_normalize(ray), -1), l->view + 3 * i);
     }
@@ -189,7 +196,7 @@ static status solve_scale(const nfps_network *n, const frame *f, const nfps_opti
     for (size_t i = 0; i < pixels && !before; i++)
         l->depth.data[i] = f->distance;
     place_points(l);
-    const nfps_scene scene = {pixels, f->count, l->mask.data, l->point, l->view, l->light, o->estimated};
+    const nfps_scene scene = {pixels, f->count, l->mask.data, l->point, l->view, f->light, o->estimated};
     img depth = {0};
     if (s == OK) s = nfps_network_run(n, &scene, l->size, l->images, before ? l->normal.data : NULL, l->normal.data);
     if (s == OK) s = pst_integrate(&l->normal, &l->mask, &l->camera, &(pst_integration){0}, &depth);
@@ -232,19 +239,18 @@ status nfps_stereo(const nfps_network *n, const merlin_capture *c, const nfps_op
     if (s == OK) s = frame_of(c, &f);
     if (s != OK) return s;
     const int count = list_sizes(f.side, sizes);
-    scale before = {0};
+    scale scales[MOST_SCALES] = {0};
+    for (int i = 0; i < count && s == OK; i++)
+        s = scale_new(&f, sizes[i], &scales[i]);
+    if (s == OK) s = scale_pictures(&f, scales, count);
     for (int i = 0; i < count && s == OK; i++) {
-        scale now;
         watch_tell(options->watch, "solving", (double)i / count);
         if (watch_stops(options->watch)) s = fail(MERLIN_STOPPED, "stopped");
-        if (s != OK) break;
-        s = scale_new(&f, sizes[i], &now);
-        if (s == OK) s = solve_scale(n, &f, options, i ? &before : NULL, &now);
-        scale_free(&before);
-        before = now;
+        if (s == OK) s = solve_scale(n, &f, options, i ? &scales[i - 1] : NULL, &scales[i]);
     }
-    if (s == OK) s = put_back(&f, &before, normal, depth);
-    scale_free(&before);
+    if (s == OK) s = put_back(&f, &scales[count - 1], normal, depth);
+    for (int i = 0; i < count; i++)
+        scale_free(&scales[i]);
     if (s != OK) {
         img_free(normal);
         img_free(depth);

@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* Shared by tests of the model: compiles a program of one of its parts. */
+/* Shared by tests of the model: programs of its parts, and their gradients. */
 #ifndef MERLIN_TESTS_MODEL_COMPILED_H
 #define MERLIN_TESTS_MODEL_COMPILED_H
+
+#include <math.h>
+#include <string.h>
 
 #include "model/model.h"
 
@@ -18,6 +21,18 @@ static inline nn_program *compiled(const model_config *config, model_part part, 
     if (s == OK) s = nn_compile(g, *params, &options, &p);
     nn_graph_free(g);
     return p;
+}
+
+/* Returns the sum of the absolute values of the gradients of all parameters whose names begin with a prefix. */
+static inline double size_of_gradients(nn_params *params, const char *prefix)
+{
+    double sum = 0;
+    for (size_t i = 0; i < nn_params_count(params); i++) {
+        const nn_param *p = nn_params_at(params, i);
+        for (size_t k = 0; p->gradient && strncmp(p->name, prefix, strlen(prefix)) == 0 && k < p->count; k++)
+            sum += fabs((double)p->gradient[k]);
+    }
+    return sum;
 }
 
 #endif

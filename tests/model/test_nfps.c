@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/rng.h"
+#include "compiled.h"
 #include "model/model.h"
 #include "model/nfps/nfps.h"
 #include "model/nfps/nfps_inputs.h"
@@ -157,17 +158,6 @@ static void fill_all(nn_program *p, const char *prefix, size_t pixels)
         snprintf(name, sizeof name, "%s%s", prefix, inputs[i].name);
         fill(p, name, inputs[i].values * pixels, inputs[i].low);
     }
-}
-
-static double size_of_gradients(nn_params *params, const char *prefix)
-{
-    double sum = 0;
-    for (size_t i = 0; i < nn_params_count(params); i++) {
-        const nn_param *p = nn_params_at(params, i);
-        for (size_t k = 0; p->gradient && strncmp(p->name, prefix, strlen(prefix)) == 0 && k < p->count; k++)
-            sum += fabs((double)p->gradient[k]);
-    }
-    return sum;
 }
 
 static void stages_learn_by_themselves(void **state)

@@ -98,17 +98,6 @@ static void their_outputs_are_pytorchs(void **state)
     check_outputs(MODEL_LI, "li");
 }
 
-static double size_of_gradients(nn_params *params, const char *prefix)
-{
-    double sum = 0;
-    for (size_t i = 0; i < nn_params_count(params); i++) {
-        const nn_param *p = nn_params_at(params, i);
-        for (size_t k = 0; p->gradient && strncmp(p->name, prefix, strlen(prefix)) == 0 && k < p->count; k++)
-            sum += fabs((double)p->gradient[k]);
-    }
-    return sum;
-}
-
 static void set_weights(nn_program *p, const char *prefix, float weight)
 {
     static const char *const names[] = {"albedo", "normal", "depth", "roughness", "relight"};

@@ -94,7 +94,7 @@ static status record_training(run *r)
 
 static bool is_lit_by_both(const run *r)
 {
-    return !is_nfps(r) && r->model.lighting == MODEL_LIGHT_BOTH;
+    return r->model.lighting == MODEL_LIGHT_BOTH;
 }
 
 static bool is_lit_by_any(const run *r)

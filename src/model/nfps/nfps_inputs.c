@@ -16,12 +16,7 @@ static const float FAINTEST = 0.03f, BRIGHTEST = 16, LARGEST_SHARE = 4, DARK = 0
 vec3 nfps_light_at(const nfps_light *light, vec3 point, float *strength)
 {
     *strength = 1;
-    if (light->distant) return light->at;
-    const vec3 way = vec3_sub(light->at, point);
-    const float squared = fmaxf(vec3_dot(way, way), 1e-12f), far = sqrtf(squared);
-    const vec3 toward = vec3_scale(way, 1 / far);
-    *strength = led_share(light->axis, light->lobe, toward) / squared;
-    return toward;
+    return light->distant ? light->at : led_light_at(light->at, light->axis, light->lobe, point, strength);
 }
 
 /* Rodrigues' formula for the axis k = view × z, of the length of the angle's sine. */

@@ -46,10 +46,9 @@ static vec3 middle_of(const merlin_capture *c, const merlin_surface *s)
 
 static vec3 near_light(const merlin_light *light, vec3 middle)
 {
-    vec3 to = vec3_sub(vec3_of(light->position), middle);
-    float squared = fmaxf(vec3_dot(to, to), 1e-12f);
-    vec3 toward = vec3_scale(to, 1 / sqrtf(squared));
-    return vec3_scale(toward, 1 / squared * led_share(vec3_of(light->direction), light->lobe, toward));
+    float arriving;
+    vec3 toward = led_light_at(vec3_of(light->position), vec3_of(light->direction), light->lobe, middle, &arriving);
+    return vec3_scale(toward, arriving);
 }
 
 static float mean_intensity(const merlin_capture *c, const merlin_light *light)

@@ -13,10 +13,8 @@ void pst_near_lights_at(const pst_problem *p, vec3 at, pst_near_lights *out)
         out->x[k] = out->y[k] = out->z[k] = out->power[k] = 0;
     for (int k = 0; k < count; k++) {
         const merlin_light *from = &p->light[k];
-        vec3 to = vec3_sub(vec3_of(from->position), at);
-        float squared = fmaxf(vec3_dot(to, to), 1e-12f);
-        vec3 l = vec3_scale(to, 1 / sqrtf(squared));
-        float power = 1 / squared * led_share(vec3_of(from->direction), from->lobe, l);
+        float power;
+        vec3 l = led_light_at(vec3_of(from->position), vec3_of(from->direction), from->lobe, at, &power);
         out->x[k] = l.x;
         out->y[k] = l.y;
         out->z[k] = l.z;

@@ -76,35 +76,27 @@ static void print_comparison(const stereo_table *t, stereo_row row, const char *
     fputc('\n', stream);
 }
 
+static void print_judge(const stereo_table *t, const char *name, stereo_row made, stereo_row taken, FILE *stream)
+{
+    fprintf(stream, "%s\n", name);
+    stereo_table_print_row(t, made, "  relit images", stream);
+    stereo_table_print_row(t, taken, "  real images", stream);
+}
+
 void stereo_table_print(const stereo_table *t, FILE *stream)
 {
     fprintf(stream, "%s, mean angular error in degrees over %zu objects; %d pictures drawn %d times\n\n", t->model,
             t->count, SUBSET_PICTURES, t->draws);
     stereo_table_print_heading(t, stream);
     stereo_table_print_row(t, STEREO_SINGLE, "single image", stream);
-    fputs("calibrated\n", stream);
-    stereo_table_print_row(t, STEREO_RELIT, "  relit images", stream);
-    stereo_table_print_row(t, STEREO_REAL, "  real images", stream);
-    fputs("uncalibrated\n", stream);
-    stereo_table_print_row(t, STEREO_RELIT_UNCALIBRATED, "  relit images", stream);
-    stereo_table_print_row(t, STEREO_REAL_UNCALIBRATED, "  real images", stream);
+    print_judge(t, "calibrated", STEREO_RELIT, STEREO_REAL, stream);
+    print_judge(t, "uncalibrated", STEREO_RELIT_UNCALIBRATED, STEREO_REAL_UNCALIBRATED, stream);
     const bool universal = !isnan(stereo_table_mean(t, STEREO_RELIT_UNIVERSAL));
-    if (universal) {
-        fputs("universal\n", stream);
-        stereo_table_print_row(t, STEREO_RELIT_UNIVERSAL, "  relit images", stream);
-        stereo_table_print_row(t, STEREO_REAL_UNIVERSAL, "  real images", stream);
-    }
     const bool nfps = !isnan(stereo_table_mean(t, STEREO_RELIT_NFPS));
-    if (nfps) {
-        fputs("nfps, lights known\n", stream);
-        stereo_table_print_row(t, STEREO_RELIT_NFPS, "  relit images", stream);
-        stereo_table_print_row(t, STEREO_REAL_NFPS, "  real images", stream);
-    }
-    if (nfps && universal) {
-        fputs("nfps, lights unknown\n", stream);
-        stereo_table_print_row(t, STEREO_RELIT_NFPS_UNCALIBRATED, "  relit images", stream);
-        stereo_table_print_row(t, STEREO_REAL_NFPS_UNCALIBRATED, "  real images", stream);
-    }
+    if (universal) print_judge(t, "universal", STEREO_RELIT_UNIVERSAL, STEREO_REAL_UNIVERSAL, stream);
+    if (nfps) print_judge(t, "nfps, lights known", STEREO_RELIT_NFPS, STEREO_REAL_NFPS, stream);
+    if (nfps && universal)
+        print_judge(t, "nfps, lights unknown", STEREO_RELIT_NFPS_UNCALIBRATED, STEREO_REAL_NFPS_UNCALIBRATED, stream);
     fputc('\n', stream);
     print_comparison(t, STEREO_RELIT, "relit images", stream);
     print_comparison(t, STEREO_RELIT_UNCALIBRATED, "relit images, uncalibrated,", stream);
