@@ -3,9 +3,9 @@ include(GNUInstallDirs)
 
 add_library(libmerlin SHARED $<TARGET_OBJECTS:merlin_image> $<TARGET_OBJECTS:merlin_model>
   $<TARGET_OBJECTS:merlin_mesh> $<TARGET_OBJECTS:merlin_estimate> $<TARGET_OBJECTS:merlin_stereo>
-  $<TARGET_OBJECTS:merlin_photo_stereo> $<TARGET_OBJECTS:merlin_surfaces> $<TARGET_OBJECTS:merlin_view>
+  $<TARGET_OBJECTS:merlin_nfps> $<TARGET_OBJECTS:merlin_photo_stereo> $<TARGET_OBJECTS:merlin_surfaces> $<TARGET_OBJECTS:merlin_view>
   $<TARGET_OBJECTS:merlin_export> $<TARGET_OBJECTS:merlin_rti> $<TARGET_OBJECTS:merlin_sequence>)
-target_link_libraries(libmerlin PRIVATE merlin_mesh merlin_estimate merlin_stereo merlin_photo_stereo
+target_link_libraries(libmerlin PRIVATE merlin_mesh merlin_estimate merlin_stereo merlin_nfps merlin_photo_stereo
   merlin_surfaces merlin_view merlin_export merlin_rti merlin_sequence)
 # before 1.0 what was built with one minor version may not run with another
 set_target_properties(libmerlin PROPERTIES OUTPUT_NAME merlin VERSION ${PROJECT_VERSION}

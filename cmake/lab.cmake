@@ -10,7 +10,7 @@ merlin_module(lab/scene PARTS . shape material object
 merlin_module(lab/render LINK merlin_scene embree)
 target_compile_definitions(merlin_render PRIVATE MERLIN_EMBREE=${embree_VERSION_MAJOR})
 merlin_module(lab/train PARTS config samples .
-  LINK merlin_model merlin_render)
+  LINK merlin_nfps merlin_model merlin_render)
 merlin_module(lab/eval PARTS metrics samples tables stereo paper
   LINK merlin_train merlin_photo_stereo)
 merlin_module(lab/onnx LINK merlin_model)

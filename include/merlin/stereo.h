@@ -97,6 +97,8 @@ typedef enum merlin_stereo_method {
     MERLIN_STEREO_NEAR,         /* near: depth and normals alternately */
     MERLIN_STEREO_SEMI,         /* distant: directions known, intensities not */
     MERLIN_STEREO_UNCALIBRATED, /* unknown, distant or near, of one intensity or on one albedo */
+    MERLIN_STEREO_NFPS,         /* near: by a network, merlin_stereo_by_network alone (after Fast-NFPS, Lichy et al.
+                                 * 2022), in fixed time; gloss counts as outliers of the albedo */
 } merlin_stereo_method;
 
 typedef struct merlin_stereo_params {
@@ -176,6 +178,21 @@ typedef struct merlin_surface {
  * with MERLIN_STEREO_AUTO or _NEAR, if that explains the pictures better than directions do. */
 merlin_status merlin_stereo(const merlin_capture *capture, const merlin_stereo_params *params, merlin_surface *out);
 void merlin_surface_free(merlin_surface *surface);
+
+/* ---- near lights by a network ---- */
+
+typedef struct merlin_near_network merlin_near_network;
+
+/* Opens weights of a network of near lights, such as models/merlin-nfps.safetensors. MERLIN_BAD_INPUT if they are
+ * another model's. */
+merlin_status merlin_near_network_open(const char *weights, merlin_near_network **out);
+void merlin_near_network_close(merlin_near_network *network);
+/* Computes the surface like merlin_stereo, with a network besides. MERLIN_STEREO_NFPS: its normals and depth, from the
+ * pictures at up to 512 pixels a side and at most 64 of them, evenly chosen. MERLIN_STEREO_NEAR, also as AUTO chooses
+ * it: the search for the depth begins at the network's, too, and the surface that explains the pictures better is kept.
+ * Other methods do without it. */
+merlin_status merlin_stereo_by_network(const merlin_near_network *network, const merlin_capture *capture,
+                                       const merlin_stereo_params *params, merlin_surface *out);
 
 #ifdef __cplusplus
 }

@@ -138,7 +138,7 @@ CaptureFiles = _struct("capture_files", [
     ("field_of_view", c_float), ("distance", c_float), *_WATCH])
 CaptureParams = _struct("capture_params", [
     ("lighting", c_int), ("unknown_intensities", c_int), ("field_of_view", c_float), ("distance", c_float)])
-STEREO_AUTO, STEREO_LS, STEREO_ROBUST, STEREO_NEAR, STEREO_SEMI, STEREO_UNCALIBRATED = range(6)
+STEREO_AUTO, STEREO_LS, STEREO_ROBUST, STEREO_NEAR, STEREO_SEMI, STEREO_UNCALIBRATED, STEREO_NFPS = range(7)
 StereoParams = _struct("stereo_params", [
     ("method", c_int), ("keep_edges", c_int), ("integrate", c_int), ("iterations", c_int), ("unchecked", c_int),
     *_WATCH])
@@ -335,6 +335,9 @@ FUNCTIONS: Dict[str, Tuple[Any, List[Any]]] = {
     "capture_add": (c_int, [_handle, _at(Image), _at(Light)]),
     "capture_free": (None, [_handle]),
     "stereo": (c_int, [_handle, _at(StereoParams), _at(Surface)]),
+    "near_network_open": (c_int, [c_char_p, _out]),
+    "near_network_close": (None, [_handle]),
+    "stereo_by_network": (c_int, [_handle, _handle, _at(StereoParams), _at(Surface)]),
     "surface_free": (None, [_at(Surface)]),
     "stereo_method_name": (c_char_p, [c_int]),
     "surface_write": (c_int, [_at(Surface), c_char_p, _at(WriteParams), c_char_p]),

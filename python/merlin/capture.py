@@ -13,6 +13,7 @@ from . import _headers as h
 from . import mesh, pictures
 from ._call import Owner, ProgressCallback, StopCallback, Watch, by_channel, call, check, choice, floats, is_path
 from ._call import optional_path, path_bytes, real, taken_text, vector3, view, whole
+from ._library import weights_path
 from .errors import WrongUseError
 from .mesh import Mesh
 from .pictures import PathLike, Picture
@@ -23,9 +24,16 @@ if TYPE_CHECKING:
     from .model import Model
 
 METHODS = {"auto": h.STEREO_AUTO, "ls": h.STEREO_LS, "robust": h.STEREO_ROBUST, "near": h.STEREO_NEAR,
-           "semi": h.STEREO_SEMI, "uncalibrated": h.STEREO_UNCALIBRATED}
+           "semi": h.STEREO_SEMI, "uncalibrated": h.STEREO_UNCALIBRATED, "nfps": h.STEREO_NFPS}
 LIGHTING = {"distant": h.DISTANT_LIGHTS, "near": h.NEAR_LIGHTS, "unknown": h.UNKNOWN_LIGHTS}
 NOWHERE = (0.0, 0.0, 0.0)
+
+
+def _near_network(weights: Optional[PathLike]) -> Owner:
+    network = Owner(ctypes.c_void_p(), "near_network_close")
+    path = weights_path("merlin-nfps" if weights is None else weights)
+    check("near_network_open", path, network.at, path=os.fsdecode(path))
+    return network
 
 
 class Light(NamedTuple):
@@ -106,20 +114,27 @@ class Capture:
         del kept
 
     def stereo(self, method: str = "auto", *, keep_edges: bool = False, integrate: bool = False, iterations: int = 0,
-               check_result: bool = True, progress: Optional[ProgressCallback] = None,
-               stop: Optional[StopCallback] = None) -> "Surface":
+               check_result: bool = True, weights: Optional[PathLike] = None,
+               progress: Optional[ProgressCallback] = None, stop: Optional[StopCallback] = None) -> "Surface":
         """Solves for the surface, from 3 pictures on (7 if the lights are unknown).
 
-        method: "auto" (by what is known of the lights), "ls", "robust", "near", "semi" or "uncalibrated". keep_edges:
-        depth may jump where the normals say so. integrate: depth that is solved with the normals is integrated from
-        them once more. iterations: at most, of "near" and "semi"; 0: the method's own. check_result: hold the result
-        against other lights, lenses and tones, for warnings. Progress and stop: as of Model.estimate."""
+        method: "auto" (by what is known of the lights), "ls", "robust", "near", "nfps" (near lights by a network),
+        "semi" or "uncalibrated". keep_edges: depth may jump where the normals say so. integrate: depth that is solved
+        with the normals is integrated from them once more. iterations: at most, of "near" and "semi"; 0: the method's own. check_result: hold the result
+        against other lights, lenses and tones, for warnings. weights: of "nfps"; None: those that ship. Progress and
+        stop: as of Model.estimate."""
         params = h.StereoParams(choice(method, METHODS, "method"), int(keep_edges), int(integrate),
                                 whole(iterations, "iterations"), int(not check_result))
         watch = Watch(progress, stop)
         watch.put(params)
         owner = Owner(h.Surface(), "surface_free")
-        watch.check("stereo", self._owner.struct, ctypes.byref(params), owner.at)
+        if weights is not None and params.method != h.STEREO_NFPS:
+            raise WrongUseError("weights are for the method nfps")
+        if params.method == h.STEREO_NFPS:
+            network = _near_network(weights)
+            watch.check("stereo_by_network", network.struct, self._owner.struct, ctypes.byref(params), owner.at)
+        else:
+            watch.check("stereo", self._owner.struct, ctypes.byref(params), owner.at)
         surface = Surface(owner)
         warn(surface.warnings)
         return surface

@@ -364,6 +364,14 @@ status photo_find_several(const char *asked, char **path)
     return asked ? photo_find_model(asked, path) : find_shipped("merlin-several", path);
 }
 
+status photo_find_near(const char *asked, char **path)
+{
+    *path = NULL;
+    status s = asked ? photo_find_model(asked, path) : find_shipped("merlin-nfps", path);
+    if (s != OK || *path) return s;
+    return fail(MERLIN_BAD_INPUT, "method nfps: no models/merlin-nfps.safetensors near the program: give --model");
+}
+
 status photo_add_several(const char *flash, merlin_model *model)
 {
     char *several = NULL;

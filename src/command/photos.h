@@ -58,6 +58,10 @@ status photo_find_models_of(const merlin_maps *maps, const char *asked, char **p
  * there, else *path is NULL. malloc'ed. */
 status photo_find_several(const char *asked, char **path);
 
+/* Finds weights of a network of near lights (merlin/stereo.h), by a name or a path; asked NULL: merlin-nfps.
+ * MERLIN_BAD_INPUT if there are none; malloc'ed. */
+status photo_find_near(const char *asked, char **path);
+
 /* Adds merlin-several, where it is there, to a model of weights that were not chosen; flash: what photo_find_models
  * found, NULL of chosen weights, which stand alone. */
 status photo_add_several(const char *flash, merlin_model *model);

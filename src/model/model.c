@@ -5,7 +5,7 @@
 
 #include "model/blocks.h"
 #include "model/model_network.h"
-#include "model/nfps/nfps.h"
+#include "model/nfps.h"
 #include "model/rivals/rival.h"
 #include "model/rivals/rival_li.h"
 #include "model/sh_bands.h"

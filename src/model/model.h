@@ -42,7 +42,7 @@
  * the network is that of "lighting": "any" until it is trained.
  *
  * With "nfps_width" it is another network altogether, which makes normals of pictures under known lights
- * (model/nfps/nfps.h).
+ * (model/nfps.h).
  *
  * With "only_lights" there is no output but "lights", and there are no losses but those of it. */
 #ifndef MERLIN_MODEL_MODEL_H

@@ -18,10 +18,10 @@ typedef enum model_rival { MODEL_NO_RIVAL, MODEL_LI, MODEL_SANG } model_rival;
 
 typedef struct model_config {
     char name[64];
-    model_rival rival; /* a rival's network in place of MERLiN's: only "cascades" is its choice */
-    int cascades;      /* number of a rival's refining stages, 0 to 2 */
-    int nfps_width;    /* > 0: the network of near lights (model/nfps/nfps.h), of so many channels; its only choice */
-    bool input_global; /* the input has indirect light (the paper's Img-g), or direct light only (Img-d) */
+    model_rival rival;     /* a rival's network in place of MERLiN's: only "cascades" is its choice */
+    int cascades;          /* number of a rival's refining stages, 0 to 2 */
+    int nfps_width;        /* > 0: the network of near lights (model/nfps.h), of so many channels; its only choice */
+    bool input_global;     /* the input has indirect light (the paper's Img-g), or direct light only (Img-d) */
     int material_decoders; /* 1 or 4 */
     bool feature_sharing;  /* the relighting decoder gets the material decoder's features */
     bool gated_attention;

@@ -25,7 +25,7 @@ typedef enum model_part {
     MODEL_INDIRECT, /* the global-illumination network alone: inputs "direct", "albedo", "normal", "roughness", "depth",
                      * "mask", for both lights "environment"; output "indirect" */
     MODEL_RELIGHT,  /* the relighting decoder alone: inputs model_features, "mask" and "light"; output "relit_direct" */
-    MODEL_FIRST,    /* the first scale alone of the network of near lights (model/nfps/nfps.h) */
+    MODEL_FIRST,    /* the first scale alone of the network of near lights (model/nfps.h) */
     MODEL_REFINE,   /* its other scales' */
 } model_part;
 

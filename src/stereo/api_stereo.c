@@ -9,6 +9,7 @@
 #include "base/api_needs.h"
 #include "base/progress.h"
 #include "stereo/doubts/capture_doubts.h"
+#include "stereo/guided.h"
 #include "stereo/integrate/surface_statistics.h"
 #include "stereo/methods/place_lights.h"
 #include "stereo/methods/solve.h"
@@ -220,13 +221,14 @@ static status describe(const merlin_capture *c, const merlin_stereo_params *para
 }
 
 /* Solves the capture; c: with a mask. */
-static status solve(merlin_capture *c, const merlin_stereo_params *params, merlin_surface *out)
+static status solve(merlin_capture *c, const merlin_stereo_params *params, const pst_guide *guide, merlin_surface *out)
 {
     const double began = clock_seconds();
     merlin_light *own = NULL;
-    bool heeds_places = params->method == MERLIN_STEREO_AUTO || params->method == MERLIN_STEREO_NEAR;
+    const merlin_stereo_method m = params->method;
+    bool heeds_places = m == MERLIN_STEREO_AUTO || m == MERLIN_STEREO_NEAR || m == MERLIN_STEREO_NFPS;
     status s = c->about_object && heeds_places ? place_lights(c, params, &own) : OK;
-    if (s == OK) s = pst_solve(c, params, out);
+    if (s == OK) s = pst_solve_guided(c, params, guide, out);
     const double solved = clock_seconds();
     if (s == OK) s = pst_surface_integrate(params, out);
     if (s == OK && !params->unchecked) s = pst_doubts(c, out, &out->warnings);
@@ -240,21 +242,28 @@ static status solve(merlin_capture *c, const merlin_stereo_params *params, merli
     return s;
 }
 
-merlin_status merlin_stereo(const merlin_capture *capture, const merlin_stereo_params *params, merlin_surface *out)
+status pst_stereo_guided(const merlin_capture *capture, const merlin_stereo_params *params, const pst_guide *guide,
+                         merlin_surface *out)
 {
     static const merlin_stereo_params usual = {0};
-    if (out) *out = (merlin_surface){0};
-    status s = api_needs(__func__, capture && out);
+    status s = OK;
     if (!params) params = &usual;
-    if (s == OK && (params->method < MERLIN_STEREO_AUTO || params->method > MERLIN_STEREO_UNCALIBRATED))
+    if (params->method < MERLIN_STEREO_AUTO || params->method > MERLIN_STEREO_NFPS)
         s = fail(MERLIN_WRONG_USE, "no method of photometric stereo has the number %d", (int)params->method);
     if (s == OK && !capture->count) s = fail(MERLIN_WRONG_USE, "the capture has no pictures");
     if (s != OK) return s;
     merlin_capture c = *capture; /* borrows everything except for a mask that is found */
     bool search = !c.mask.data;
     if (search) s = pst_capture_find_mask(&c);
-    if (s == OK) s = solve(&c, params, out);
+    if (s == OK) s = solve(&c, params, guide, out);
     if (search) img_free(&c.mask);
     if (s != OK) merlin_surface_free(out);
     return s;
+}
+
+merlin_status merlin_stereo(const merlin_capture *capture, const merlin_stereo_params *params, merlin_surface *out)
+{
+    if (out) *out = (merlin_surface){0};
+    status s = api_needs(__func__, capture && out);
+    return s == OK ? pst_stereo_guided(capture, params, NULL, out) : s;
 }

@@ -208,6 +208,73 @@ static void a_near_capture_without_focal_length_is_refused(void **state)
     capture_drop(&c);
 }
 
+/* What a guide tells, and the distance that it was told. */
+typedef struct told {
+    const img *normal, *depth;
+    float mean, distance; /* of the depth, and the camera's */
+} told;
+
+static status tell(const void *context, const merlin_capture *c, const watch *w, img *normal, img *depth)
+{
+    const told *t = context;
+    (void)w;
+    ((told *)context)->distance = c->camera.distance;
+    status s = img_copy(normal, t->normal);
+    if (s == OK) s = img_copy(depth, t->depth);
+    for (size_t i = 0; s == OK && i < img_value_count(depth); i++)
+        depth->data[i] *= c->camera.distance / t->mean;
+    return s;
+}
+
+/* The ball's own surface is taken as it is, its matte albedo is measured, and a highlight does not add to that. */
+static void a_surface_that_is_told_gets_its_albedo(void **state)
+{
+    (void)state;
+    merlin_capture c;
+    merlin_surface s;
+    const float mean = ball_under_leds(&c, 1);
+    told t = {&c.normal_true, &c.depth_true, mean, 0};
+    const merlin_stereo_params params = {.method = MERLIN_STEREO_NFPS};
+    assert_int_equal(pst_solve(&c, &params, &s), MERLIN_WRONG_USE);
+    assert_int_equal(pst_solve_guided(&c, &params, &(pst_guide){tell, &t}, &s), OK);
+    print_message("distance %.3f of %.3f\n", (double)t.distance, (double)mean);
+    assert_true(fabsf(t.distance / mean - 1) < 0.03f); /* nobody told it, so the lights do */
+    assert_true(mean_angle(&c, &s.normal) < 0.1);
+    double sum = 0, count = 0;
+    for (int i = 0; i < SIZE * SIZE; i++) {
+        assert_true(fabsf(s.depth.data[i] - c.depth_true.data[i] * t.distance / mean) < 1e-5f);
+        sum += (double)s.albedo.data[i];
+        count += (double)c.mask.data[i];
+    }
+    assert_true(fabs(sum / count / (0.36 / M_PI) - 1) < 0.15);
+    merlin_surface_free(&s);
+    capture_drop(&c);
+}
+
+/* A search that begins elsewhere, too, finds nothing worse. */
+static void a_guide_who_is_wrong_does_no_harm(void **state)
+{
+    (void)state;
+    merlin_capture c;
+    merlin_surface s;
+    img normal, depth;
+    const float mean = ball_under_leds(&c, 0);
+    c.camera.distance = mean;
+    assert_int_equal(img_copy(&normal, &c.normal_true), OK);
+    assert_int_equal(img_copy(&depth, &c.depth_true), OK);
+    for (int i = 0; i < SIZE * SIZE; i++) /* a bowl instead of a ball */
+        if (c.mask.data[i] > 0.5f) depth.data[i] = 2 * mean - depth.data[i];
+    told t = {&normal, &depth, mean, 0};
+    assert_int_equal(pst_solve_guided(&c, &(merlin_stereo_params){0}, &(pst_guide){tell, &t}, &s), OK);
+    assert_int_equal(s.method, MERLIN_STEREO_NEAR);
+    assert_true(t.distance == mean);
+    assert_true(mean_angle(&c, &s.normal) < 2);
+    img_free(&normal);
+    img_free(&depth);
+    merlin_surface_free(&s);
+    capture_drop(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -218,6 +285,8 @@ int main(void)
         cmocka_unit_test(a_ring_of_lights_does_not_tell_the_distance),
         cmocka_unit_test(two_rings_of_lights_tell_the_distance),
         cmocka_unit_test(near_lights_on_a_line_are_refused),
+        cmocka_unit_test(a_surface_that_is_told_gets_its_albedo),
+        cmocka_unit_test(a_guide_who_is_wrong_does_no_harm),
         cmocka_unit_test(a_near_capture_without_focal_length_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -50,11 +50,11 @@ static const char help[] =
     "      --distance D     from the camera to the object, on average, in the unit of the lights' positions (default:\n"
     "                       with --near as the lights tell, else 1); depth is in it. Wants --near or --fov\n"
     "      --method NAME    for known directions ls, robust (gloss and cast shadows) or semi (unknown strengths),\n"
-    "                       near for positions; without lights universal (by a model of any light; from seven "
-    "pictures\n"
-    "                       on the lights are found) or uncalibrated (without a model); auto (default): near with "
-    "--near,\n"
-    "                       robust with lights, else universal; of one photograph near (default) or uncalibrated\n"
+    "                       near for positions, nfps the same by a network; without lights universal (by a model of\n"
+    "                       any light; from seven pictures on the lights are found) or uncalibrated (without a "
+    "model);\n"
+    "                       auto (default): near with --near, robust with lights, else universal; of one photograph\n"
+    "                       near (default) or uncalibrated\n"
     "      --mask FILE      white on the object (default: mask.png, NAME.mask.png, NAME_mask.png or the like in DIR, "
     "of\n"
     "                       any picture's kind, else what is brighter than a dark background)\n"
@@ -69,7 +69,7 @@ static const char help[] =
     "  -o, --output DIR     where to (default: stereo inside DIR, or inside the photograph's name + .merlin)\n"
     "      --model W, --size N, --views N, --exposure EV, --point X,Y, --box X,Y,W,H\n"
     "                       for a PHOTO, as in merlin estimate, and for pictures without lights, except --exposure;\n"
-    "                       --model also for MAPS\n"
+    "                       --model also for MAPS and --method nfps\n"
     "      --json           the report on standard output\n"
     "  -t, --threads N      how many threads work (default: one a processor)\n"
     "  -q, --quiet          no other output than errors\n"
@@ -99,13 +99,13 @@ static status take_method(const char *name, void *into)
     request *r = into;
     r->universal = strcmp(name, "universal") == 0;
     if (r->universal) return OK;
-    for (int m = MERLIN_STEREO_AUTO; m <= MERLIN_STEREO_UNCALIBRATED; m++)
+    for (int m = MERLIN_STEREO_AUTO; m <= MERLIN_STEREO_NFPS; m++)
         if (strcmp(name, merlin_stereo_method_name((merlin_stereo_method)m)) == 0) {
             r->solve.method = (merlin_stereo_method)m;
             return OK;
         }
-    return fail(MERLIN_WRONG_USE, "--method wants ls, robust, near, semi, universal, uncalibrated or auto, not \"%s\"",
-                name);
+    return fail(MERLIN_WRONG_USE,
+                "--method wants ls, robust, near, nfps, semi, universal, uncalibrated or auto, not \"%s\"", name);
 }
 
 static status take_distance(const char *text, void *into)
@@ -158,7 +158,8 @@ static status check_maps(const request *r)
 /* Refuses options of the network where none sees the pictures. */
 static status check_no_network(const request *r)
 {
-    if (!r->weights && !photo_params_given(&r->params)) return OK;
+    const bool sees_lights = r->solve.method == MERLIN_STEREO_NFPS; /* by weights of its own */
+    if ((!r->weights || sees_lights) && !photo_params_given(&r->params)) return OK;
     return fail(MERLIN_WRONG_USE,
                 "--model, --size, --views, --exposure, --point and --box are for one photograph, or pictures without a "
                 "list of lights");
@@ -188,6 +189,8 @@ static status check(request *r)
         return fail(MERLIN_WRONG_USE,
                     "--method %s is for distant lights, and one photograph is relit by near ones: use near",
                     merlin_stereo_method_name(r->solve.method));
+    if (is_one_photo && r->solve.method == MERLIN_STEREO_NFPS)
+        return fail(MERLIN_WRONG_USE, "--method nfps is for a folder of pictures under known lights");
     if (r->maps) return check_maps(r);
     const bool may_lack_lights = r->solve.method == MERLIN_STEREO_AUTO && !o->lights && !o->near_lights;
     if (is_capture(r) && !may_lack_lights) s = check_no_network(r);
@@ -271,6 +274,19 @@ static status from_photo(const request *r, merlin_surface *out)
     return s;
 }
 
+static status from_capture(const request *r, const merlin_capture *capture, merlin_surface *out)
+{
+    char *weights = NULL;
+    merlin_near_network *network = NULL;
+    if (r->solve.method != MERLIN_STEREO_NFPS) return merlin_stereo(capture, &r->solve, out);
+    status s = photo_find_near(r->weights, &weights);
+    if (s == OK) s = merlin_near_network_open(weights, &network);
+    if (s == OK) s = merlin_stereo_by_network(network, capture, &r->solve, out);
+    merlin_near_network_close(network);
+    free(weights);
+    return s;
+}
+
 static status print_json(const request *r, const merlin_surface *surface, const char *output,
                          const staged_files *written)
 {
@@ -304,11 +320,9 @@ static status announce(const request *r, const char *output, const merlin_surfac
  * are about the same for pictures of any number and size. With one photograph random subsets are solved. */
 static void plan(const request *r, stage_bar *bar)
 {
-    static const double solving[] = {[MERLIN_STEREO_LS] = 0.2,
-                                     [MERLIN_STEREO_ROBUST] = 4.4,
-                                     [MERLIN_STEREO_NEAR] = 9,
-                                     [MERLIN_STEREO_SEMI] = 4.5,
-                                     [MERLIN_STEREO_UNCALIBRATED] = 11.5};
+    static const double solving[] = {
+        [MERLIN_STEREO_LS] = 0.2,   [MERLIN_STEREO_ROBUST] = 4.4,        [MERLIN_STEREO_NEAR] = 9,
+        [MERLIN_STEREO_SEMI] = 4.5, [MERLIN_STEREO_UNCALIBRATED] = 11.5, [MERLIN_STEREO_NFPS] = 8};
     bool edges = r->solve.keep_edges;
     merlin_stereo_method method = r->solve.method;
     if (method == MERLIN_STEREO_AUTO) method = r->near ? MERLIN_STEREO_NEAR : MERLIN_STEREO_ROBUST;
@@ -381,7 +395,7 @@ static status solve_and_write(request *r, const stereo_files *files, stage_bar *
         s = see_together(r, capture, files, bar, shown, began);
     } else if (s == OK) {
         s = capture ? check_no_network(r) : OK;
-        if (s == OK) s = capture ? merlin_stereo(capture, &r->solve, &surface) : from_photo(r, &surface);
+        if (s == OK) s = capture ? from_capture(r, capture, &surface) : from_photo(r, &surface);
         merlin_capture_free(capture);
         capture = NULL;
         if (s == OK) s = write_surface(r, files, bar, shown, &surface, began);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/inline.h"
+#include "base/number.h"
 #include "base/parallel.h"
 #include "stereo/algebra/matrix3.h"
 #include "stereo/fit/field_neighbours.h"
@@ -16,7 +17,19 @@
 /* Number of pixels that are gathered together, so that a picture's cache lines serve all of them. */
 enum { BLOCK = 32 };
 
-typedef enum field_task { FIT, REFINE, SEARCH, SECOND, PREDICT, SPREAD, OUTLIERS, MODEL, FALL_OFF, STORE } field_task;
+typedef enum field_task {
+    FIT,
+    REFINE,
+    SEARCH,
+    SECOND,
+    PREDICT,
+    SPREAD,
+    OUTLIERS,
+    ALBEDO,
+    MODEL,
+    FALL_OFF,
+    STORE
+} field_task;
 
 typedef struct fit_job {
     const pst_field *field;
@@ -160,6 +173,20 @@ static void replace_outlier(const fit_job *job, size_t i, const pst_lobe_data *d
     if (trial.cost < own->cost + job->contradiction * less_strange) job->next[i] = trial;
 }
 
+/* Returns the median of the albedos by single observations, of those whose light does not graze the surface. */
+static float albedo_of(const pst_observations *o, vec3 n)
+{
+    static const float GRAZING = 0.1f;
+    float albedo[PST_MAX_LIGHTS];
+    size_t count = 0;
+    for (int k = 0; k < o->padded; k++) {
+        const float cosine = n.x * o->x[k] + n.y * o->y[k] + n.z * o->z[k];
+        if (o->usable[k] > 0 && cosine > GRAZING) albedo[count++] = o->value[k] / cosine;
+    }
+    qsort(albedo, count, sizeof *albedo, number_ascending);
+    return count > 0 ? albedo[count / 2] : 0;
+}
+
 /* Fits the lobe; power NULL: distant lights. */
 static void fit_lobe(const fit_job *job, size_t i, const pst_lobe_data *d, const float *power, run_start *begun)
 {
@@ -184,6 +211,9 @@ static void fit_lobe(const fit_job *job, size_t i, const pst_lobe_data *d, const
         break;
     case OUTLIERS:
         replace_outlier(job, i, d);
+        break;
+    case ALBEDO:
+        *own = (pst_shading){.normal = own->normal, .albedo = albedo_of(&d->seen, own->normal)};
         break;
     case MODEL:
         pst_lobe_weigh(d, lobe_of(f, own), own, job->weight + at, job->model + at);
@@ -353,6 +383,11 @@ status pst_field_predict(const pst_field *f, double *cost)
     status s = run(&job);
     *cost = job.total;
     return s;
+}
+
+status pst_field_albedo(const pst_field *f)
+{
+    return run(&(fit_job){.field = f, .task = ALBEDO});
 }
 
 status pst_field_model(const pst_field *f, float *weight, float *model)

@@ -26,7 +26,9 @@ enum { PST_FEWEST_UNKNOWN = 7 };
 typedef struct pst_expected {
     const img *normal; /* 3 channels, unit, or zero where there is none, of the pictures' size */
     const img *depth;  /* 1 channel, any unit, 0 where there is none; NULL: unknown */
-    const vec3 *light; /* one per picture: the direction to its light times the probability that there is one */
+    /* one per picture: the direction to its light times the probability that there is one; NULL: the lights are known
+     */
+    const vec3 *light;
     /* the same lights as they are told by who compared the pictures, which is more exact, and their inverse distances
      * from the middle of the object, 1: as far as the camera; NULL: nobody did */
     const vec3 *compared;
@@ -40,7 +42,7 @@ typedef struct pst_problem {
     size_t pixel_count;
     float saturation;             /* share of full scale below which values are usable */
     int iterations;               /* 0: the solver's default */
-    const pst_expected *expected; /* for unknown lights; NULL: nothing */
+    const pst_expected *expected; /* for unknown and near lights; NULL: nothing */
     pst_effort *effort;           /* may be NULL */
 } pst_problem;
 

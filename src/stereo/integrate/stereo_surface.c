@@ -6,7 +6,7 @@
 
 #include "stereo/integrate/integrate.h"
 
-static const char *const method_names[] = {"auto", "ls", "robust", "near", "semi", "uncalibrated"};
+static const char *const method_names[] = {"auto", "ls", "robust", "near", "semi", "uncalibrated", "nfps"};
 enum { METHOD_COUNT = sizeof method_names / sizeof *method_names };
 
 int pst_method_from_name(const char *name)

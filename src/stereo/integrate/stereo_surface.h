@@ -5,7 +5,7 @@
 
 #include "stereo/capture/capture.h"
 
-/* Returns the method of this name ("ls", "robust", "near", "semi", "uncalibrated", "auto"); -1 if unknown. */
+/* Returns the method of this name ("ls", "robust", "near", "semi", "uncalibrated", "nfps", "auto"); -1 if unknown. */
 int pst_method_from_name(const char *name);
 
 /* Returns MERLIN_WRONG_USE unless the surface has all of its images, of one size. */

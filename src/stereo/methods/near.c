@@ -2,7 +2,8 @@
 /* Photometric stereo with near point lights and a perspective camera by alternation (the scheme of Logothetis, Mecca &
  * Cipolla, Semi-calibrated near field photometric stereo, CVPR 2017, with a robust fit for the normals): a depth map
  * gives each pixel its own light vectors, inverse-square attenuation and LED lobes; these give its normal
- * (field_fit.h); and the normals give a depth map by integration. The first depth map is a plane that faces the camera.
+ * (field_fit.h); and the normals give a depth map by integration. The first depth map is a plane that faces the camera;
+ * where a depth map is expected, the search begins there, too, and what explains the pictures better is kept.
  *
  * Normals do not determine how far behind another a part of the object lies, and integration alone joins parts that
  * only touch in the picture. The lights do: each pixel's fit also yields the distance at which it would agree better
@@ -66,6 +67,16 @@ static void fill_plane(const pst_problem *p, float distance, img *depth)
 {
     for (size_t i = 0; i < p->pixel_count; i++)
         depth->data[p->pixel[i]] = distance;
+}
+
+/* Fills in the expected depth or, without one, a plane. */
+static void fill_first(near_job *job)
+{
+    const pst_problem *p = job->problem;
+    const img *expected = p->expected ? p->expected->depth : NULL;
+    fill_plane(p, job->camera.distance, &job->out->depth);
+    for (size_t i = 0; expected && i < p->pixel_count; i++)
+        if (expected->data[p->pixel[i]] > 0) job->out->depth.data[p->pixel[i]] = expected->data[p->pixel[i]];
 }
 
 static float light_reach(const merlin_capture *c)
@@ -245,18 +256,52 @@ static status iterate(near_job *job)
     return s;
 }
 
-/* Finds the depth, starting from a plane at the known or most likely distance. */
+/* Searches from the depth that is there, at the known or most likely distance. */
+static status search_depth(near_job *job, float distance)
+{
+    float scale = 1;
+    job->held_at = job->camera.distance = distance;
+    status s = OK;
+    if (!(distance > 0)) {
+        job->camera.distance = fmaxf(light_reach(job->problem->capture), 1e-6f);
+        s = best_scale(job, 1.3f, 8, true, &scale);
+    }
+    rescale(job, scale);
+    return s == OK ? iterate(job) : s;
+}
+
+/* Searches from the expected depth, too, and keeps that if it costs less. */
+static status search_expected(near_job *job, float distance)
+{
+    near_job other = *job;
+    merlin_surface found = {.normal = job->out->normal};
+    double here, there;
+    other.out = &found;
+    status s = img_copy(&found.depth, &job->out->depth);
+    if (s == OK) fill_first(&other);
+    if (s == OK) s = search_depth(&other, distance);
+    if (s == OK) s = cost_at(job, 1, true, &here);
+    if (s == OK) s = cost_at(&other, 1, true, &there);
+    if (s == OK && there < here) {
+        const img depth = job->out->depth;
+        merlin_surface *const out = job->out;
+        out->depth = found.depth;
+        found.depth = depth;
+        *job = other;
+        job->out = out;
+    }
+    img_free(&found.depth);
+    return s;
+}
+
+/* Finds the depth. */
 static status find_depth(near_job *job)
 {
     const pst_problem *p = job->problem;
     float distance = p->capture->camera.distance;
-    job->held_at = distance;
-    job->camera.distance = distance > 0 ? distance : fmaxf(light_reach(p->capture), 1e-6f);
-    fill_plane(p, job->camera.distance, &job->out->depth);
-    float scale = 1;
-    status s = distance > 0 ? OK : best_scale(job, 1.3f, 8, true, &scale);
-    rescale(job, scale);
-    if (s == OK) s = iterate(job);
+    fill_plane(p, distance > 0 ? distance : fmaxf(light_reach(p->capture), 1e-6f), &job->out->depth);
+    status s = search_depth(job, distance);
+    if (s == OK && p->expected && p->expected->depth) s = search_expected(job, distance);
     bool unsure = false;
     if (s == OK) s = check_distance(job, &unsure);
     job->out->distance_unsure = unsure && !(distance > 0);
@@ -333,6 +378,28 @@ static status solve(near_job *job)
     pst_field f = whole_field(job);
     if (s == OK) s = pst_field_replace_outliers(&f, SWEEPS);
     return s == OK ? pst_field_store(&f, job->out) : s;
+}
+
+status pst_near_distance(const pst_problem *p, float about, float *distance)
+{
+    static const float ratios[] = {1.3f, 1.08f, 1.02f};
+    smaller_problem small;
+    merlin_surface surface = {0};
+    near_job job = {0};
+    status s = smaller_problem_new(p, SMALL, &small);
+    if (s == OK) s = job_new(&small.problem, &surface, &job);
+    job.camera.distance = about > 0 ? about : fmaxf(light_reach(p->capture), 1e-6f);
+    if (s == OK) fill_first(&job);
+    for (int i = about > 0 ? 1 : 0; s == OK && i < 3; i++) {
+        float scale = 1;
+        s = best_scale(&job, ratios[i], i ? 4 : 8, true, &scale);
+        rescale(&job, scale);
+    }
+    *distance = job.camera.distance;
+    job_free(&job);
+    merlin_surface_free(&surface);
+    smaller_problem_free(&small);
+    return s;
 }
 
 status pst_solve_near(const pst_problem *p, merlin_surface *out)

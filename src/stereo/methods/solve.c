@@ -32,27 +32,34 @@ static merlin_stereo_method choose(const merlin_capture *c)
     return c->intensities_known ? MERLIN_STEREO_ROBUST : MERLIN_STEREO_SEMI;
 }
 
-/* expecting: a surface and lights are expected from elsewhere. */
-static status check_method(const merlin_capture *c, merlin_stereo_method m, bool expecting)
+/* Fails for method near, or one like it, of a capture that it is not for. */
+static status check_near(const merlin_capture *c, merlin_stereo_method m)
+{
+    const char *name = merlin_stereo_method_name(m);
+    if (c->lighting != MERLIN_NEAR_LIGHTS)
+        return fail(MERLIN_WRONG_USE, "method %s needs light positions, which this capture does not have; use %s", name,
+                    c->lighting == MERLIN_DISTANT_LIGHTS
+                        ? "robust, or say that its lights are near if its list holds positions"
+                        : "--method uncalibrated");
+    if (!(c->camera.focal > 0)) return fail(MERLIN_WRONG_USE, "method %s needs the camera's focal length", name);
+    return pst_check_positions(c->light, c->count);
+}
+
+/* fewest: least number of pictures. */
+static status check_method(const merlin_capture *c, merlin_stereo_method m, int fewest)
 {
     bool distant = m == MERLIN_STEREO_LS || m == MERLIN_STEREO_ROBUST || m == MERLIN_STEREO_SEMI;
     if (distant && c->lighting != MERLIN_DISTANT_LIGHTS)
         return fail(MERLIN_WRONG_USE, "method %s needs light directions, which this capture does not have; use %s",
                     merlin_stereo_method_name(m), c->lighting == MERLIN_NEAR_LIGHTS ? "near" : "--method uncalibrated");
-    if (m == MERLIN_STEREO_NEAR && c->lighting != MERLIN_NEAR_LIGHTS)
-        return fail(MERLIN_WRONG_USE, "method near needs light positions, which this capture does not have; use %s",
-                    c->lighting == MERLIN_DISTANT_LIGHTS
-                        ? "robust, or say that its lights are near if its list holds positions"
-                        : "--method uncalibrated");
-    if (m == MERLIN_STEREO_NEAR && !(c->camera.focal > 0))
-        return fail(MERLIN_WRONG_USE, "method near needs the camera's focal length");
-    if (c->count < (expecting ? 2 : 3))
-        return fail(MERLIN_BAD_INPUT, "photometric stereo needs pictures under 3 or more lights, not %d", c->count);
+    if (c->count < fewest)
+        return fail(MERLIN_BAD_INPUT, "photometric stereo needs pictures under %d or more lights, not %d", fewest,
+                    c->count);
     if (c->count > PST_MAX_LIGHTS && m != MERLIN_STEREO_LS)
         return fail(MERLIN_BAD_INPUT, "%d pictures are more than the %d that method %s solves%s", c->count,
                     PST_MAX_LIGHTS, merlin_stereo_method_name(m),
                     c->lighting == MERLIN_DISTANT_LIGHTS ? "; use ls" : "");
-    if (m == MERLIN_STEREO_NEAR) return pst_check_positions(c->light, c->count);
+    if (m == MERLIN_STEREO_NEAR || m == MERLIN_STEREO_NFPS) return check_near(c, m);
     return distant ? check_known_directions(c->light, c->count) : OK;
 }
 
@@ -170,6 +177,8 @@ static status run(const pst_problem *p, merlin_surface *out)
         return pst_solve_semi(p, out);
     case MERLIN_STEREO_UNCALIBRATED:
         return pst_solve_uncalibrated(p, out);
+    case MERLIN_STEREO_NFPS:
+        return pst_solve_given(p, out);
     default:
         return fail(MERLIN_WRONG_USE, "there is no such method of photometric stereo");
     }
@@ -182,19 +191,69 @@ static size_t expected_effort(const pst_problem *p, merlin_stereo_method method)
     static const size_t passes[] = {[MERLIN_STEREO_ROBUST] = 9,
                                     [MERLIN_STEREO_NEAR] = 11,
                                     [MERLIN_STEREO_SEMI] = 9,
-                                    [MERLIN_STEREO_UNCALIBRATED] = 13};
+                                    [MERLIN_STEREO_UNCALIBRATED] = 13,
+                                    [MERLIN_STEREO_NFPS] = 2};
     enum { SMALL_ONES = 300000 };
     bool known = (size_t)method < sizeof passes / sizeof *passes;
     return (known ? passes[method] : 1) * p->pixel_count + (method == MERLIN_STEREO_NEAR ? SMALL_ONES : 0) + 1;
 }
 
-status pst_solve_expecting(const merlin_capture *c, const merlin_stereo_params *params, const pst_expected *expected,
-                           merlin_surface *out)
+/* Who expects something: a surface and lights, or a guide who is asked for the surface. */
+typedef struct expecting {
+    const pst_expected *expected;
+    const pst_guide *guide;
+} expecting;
+
+/* Asks at the distance that is known, or that of the best plane, and then of what was found at that one. */
+static status ask(pst_problem *p, const pst_guide *guide, const watch *w, img *normal, img *depth)
+{
+    static const float near_enough = 0.03f;
+    merlin_capture told = *p->capture; /* borrows everything */
+    const bool known = told.camera.distance > 0;
+    const pst_expected found = {.normal = normal, .depth = depth};
+    float distance = told.camera.distance;
+    status s = known ? OK : pst_near_distance(p, 0, &told.camera.distance);
+    if (s == OK) s = guide->find(guide->context, &told, w, normal, depth);
+    if (s != OK || known) return s;
+    p->expected = &found;
+    s = pst_near_distance(p, told.camera.distance, &distance);
+    p->expected = NULL;
+    if (s != OK || fabsf(distance / told.camera.distance - 1) < near_enough) return s;
+    img_free(normal);
+    img_free(depth);
+    told.camera.distance = distance;
+    return guide->find(guide->context, &told, w, normal, depth);
+}
+
+/* Runs the method with what the guide finds, if there is one and the method is for near lights. */
+static status run_guided(pst_problem *p, const pst_guide *guide, const watch *w, merlin_surface *out)
+{
+    const bool near = out->method == MERLIN_STEREO_NEAR || out->method == MERLIN_STEREO_NFPS;
+    img normal = {0}, depth = {0};
+    const pst_expected found = {.normal = &normal, .depth = &depth};
+    if (!guide || !near) return run(p, out);
+    status s = ask(p, guide, w, &normal, &depth);
+    p->expected = &found;
+    if (s == OK) s = run(p, out);
+    p->expected = NULL;
+    img_free(&normal);
+    img_free(&depth);
+    return s;
+}
+
+static status check_expecting(const merlin_capture *c, merlin_stereo_method m, expecting e)
+{
+    if (m == MERLIN_STEREO_NFPS && !e.guide)
+        return fail(MERLIN_WRONG_USE, "method nfps needs a network, which merlin_stereo_by_network takes");
+    return check_method(c, m, e.expected ? 2 : 3);
+}
+
+static status solve(const merlin_capture *c, const merlin_stereo_params *params, expecting e, merlin_surface *out)
 {
     const watch shown = {params->progress, params->progress_context, params->stop};
     *out = (merlin_surface){.method = params->method == MERLIN_STEREO_AUTO ? choose(c) : params->method,
                             .camera = c->camera};
-    status s = check_method(c, out->method, expected != NULL);
+    status s = check_expecting(c, out->method, e);
     if (s != OK) return s;
     merlin_light *light = calloc((size_t)c->count, sizeof *light);
     if (!light) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", c->count);
@@ -202,7 +261,7 @@ status pst_solve_expecting(const merlin_capture *c, const merlin_stereo_params *
                      .light = light,
                      .saturation = PST_SATURATED,
                      .iterations = params->iterations,
-                     .expected = expected};
+                     .expected = e.expected};
     pst_effort effort = {.watch = &shown, .owner = pthread_self()};
     if (shown.tell || shown.stop) p.effort = &effort;
     watch_tell(&shown, "solving", 0);
@@ -212,7 +271,7 @@ status pst_solve_expecting(const merlin_capture *c, const merlin_stereo_params *
     if (s == OK && out->method != MERLIN_STEREO_LS) s = pst_list_pixels(c, &p);
     effort.expected = expected_effort(&p, out->method);
     if (s == OK) s = allocate(c, out);
-    if (s == OK) s = run(&p, out);
+    if (s == OK) s = run_guided(&p, e.guide, &shown, out);
     if (s == OK && p.effort)
         pst_effort_add(&effort, 0); /* reports the end, as other threads may have fitted the last pixels */
     if (s == OK && p.pixel && !out->depth.data) s = pst_unlit_fill(&p, out);
@@ -225,5 +284,17 @@ status pst_solve_expecting(const merlin_capture *c, const merlin_stereo_params *
 
 status pst_solve(const merlin_capture *c, const merlin_stereo_params *params, merlin_surface *out)
 {
-    return pst_solve_expecting(c, params, NULL, out);
+    return solve(c, params, (expecting){0}, out);
+}
+
+status pst_solve_expecting(const merlin_capture *c, const merlin_stereo_params *params, const pst_expected *expected,
+                           merlin_surface *out)
+{
+    return solve(c, params, (expecting){.expected = expected}, out);
+}
+
+status pst_solve_guided(const merlin_capture *c, const merlin_stereo_params *params, const pst_guide *guide,
+                        merlin_surface *out)
+{
+    return solve(c, params, (expecting){.guide = guide}, out);
 }

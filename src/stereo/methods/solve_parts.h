@@ -9,7 +9,12 @@
 status pst_solve_ls(const pst_problem *p, merlin_surface *out);
 status pst_solve_robust(const pst_problem *p, merlin_surface *out);
 status pst_solve_near(const pst_problem *p, merlin_surface *out);
+/* Finds the distance at which the expected depth, or without one a plane, explains the pictures best, near `about`,
+ * which is the depth's mean; 0: anywhere. */
+status pst_near_distance(const pst_problem *p, float about, float *distance);
 status pst_solve_semi(const pst_problem *p, merlin_surface *out);
 status pst_solve_uncalibrated(const pst_problem *p, merlin_surface *out);
+/* Takes normals and depth as they are expected, under near lights, and measures the albedo. */
+status pst_solve_given(const pst_problem *p, merlin_surface *out);
 
 #endif

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "lab/train/samples/nfps_sample.h"
-#include "model/nfps/nfps.h"
-#include "model/nfps/nfps_inputs.h"
+#include "model/nfps.h"
+#include "nfps/nfps_inputs.h"
 
 /* last, as cmocka defines a macro named fail */
 #include <setjmp.h>
@@ -63,13 +63,14 @@ static void ball_of(ball *b)
 
 typedef struct inputs {
     float picture[PICTURES * SIDE * SIDE * NFPS_PICTURE], light[PICTURES * SIDE * SIDE * NFPS_LIGHT];
+    float matte[SIDE * SIDE * NFPS_MATTE];
     float mask[SIDE * SIDE], normal[3 * SIDE * SIDE], normal_true[3 * SIDE * SIDE], loss_mask[SIDE * SIDE];
 } inputs;
 
 static nfps_stage_place place_in(inputs *in, bool refines)
 {
-    return (nfps_stage_place){in->picture,     in->light,    in->mask, refines ? in->normal : NULL,
-                              in->normal_true, in->loss_mask};
+    return (nfps_stage_place){
+        {in->picture, in->light, in->matte}, in->mask, refines ? in->normal : NULL, in->normal_true, in->loss_mask};
 }
 
 static status fill(const ball *b, uint64_t index, inputs *first, inputs *refining)

@@ -14,7 +14,7 @@ typedef enum stereo_row {
     STEREO_RELIT_UNIVERSAL, /* from relit pictures seen together by a network, lights unknown (merlin_maps_from_capture)
                              */
     STEREO_REAL_UNIVERSAL,
-    STEREO_RELIT_NFPS, /* by the network of near lights, lights known (photo_stereo/nfps_stereo.h) */
+    STEREO_RELIT_NFPS, /* by the network of near lights, lights known (nfps/nfps_stereo.h) */
     STEREO_REAL_NFPS,
     STEREO_RELIT_NFPS_UNCALIBRATED, /* by the same with lights that a network tells (lights_of_capture) */
     STEREO_REAL_NFPS_UNCALIBRATED,

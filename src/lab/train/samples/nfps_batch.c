@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "model/nfps/nfps.h"
+#include "model/nfps.h"
 
 /* Floats a pixel of an unpacked sample: four maps of three channels, three of one, and the targets. */
 enum { VIEW_VALUES = 4 * 3 + 3 + TRAIN_LAMPS * TRAIN_LAMP_VALUES };
@@ -32,8 +32,9 @@ static float *place_of(nn_program *program, const char *prefix, const char *name
 static nfps_stage_place stage_of(nn_program *program, const char *prefix, size_t before, size_t pictures)
 {
     return (nfps_stage_place){
-        .picture = place_of(program, prefix, "picture", before * pictures * NFPS_PICTURE),
-        .light = place_of(program, prefix, "light", before * pictures * NFPS_LIGHT),
+        .in = {.picture = place_of(program, prefix, "picture", before * pictures * NFPS_PICTURE),
+               .light = place_of(program, prefix, "light", before * pictures * NFPS_LIGHT),
+               .matte = place_of(program, prefix, "matte", before * NFPS_MATTE)},
         .mask = place_of(program, prefix, "mask", before),
         .normal = place_of(program, prefix, "normal", 3 * before),
         .normal_true = place_of(program, prefix, "normal_true", 3 * before),

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/number.h"
-#include "model/nfps/nfps_inputs.h"
+#include "nfps/nfps_inputs.h"
 #include "optics/light.h"
 
 /* Shares of presentations: a part of the object at full resolution; lights that are estimates. */
@@ -290,7 +290,7 @@ static void store(const train_view *v, const capture *c, rng *r, const window *w
     for (int k = 0; k < c->pictures; k++)
         expose(w, w->images + 3 * (size_t)k * w->pixels, c->gain[k], white, c->read, r);
     const nfps_scene scene = {w->pixels, c->pictures, w->mask, w->point, w->view, c->light, c->estimated};
-    nfps_encode(&scene, w->images, w->work, place->picture, place->light);
+    nfps_encode(&scene, w->images, w->work, &place->in);
     nfps_turn_all(&scene, w->normal, place->normal_true);
     if (place->normal) nfps_turn_all(&scene, w->known, place->normal);
     for (size_t i = 0; i < w->pixels; i++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Prepares a sample for one presentation to the network of near lights (model/nfps/nfps.h).
+/* Prepares a sample for one presentation to the network of near lights (model/nfps.h).
  *
  *     status s = train_dataset_get(data, i, orientation, &view);           with targets, of twice the size
  *     if (s == OK) s = nfps_sample_fill(&view, &rng, &place);
@@ -13,10 +13,11 @@
 
 #include "base/rng.h"
 #include "lab/train/samples/dataset.h"
+#include "nfps/nfps_inputs.h"
 
 /* One stage's inputs in the batch for one object. */
 typedef struct nfps_stage_place {
-    float *picture, *light;                         /* NFPS_PICTURE and NFPS_LIGHT values, of each picture */
+    nfps_arrays in;
     float *mask, *normal, *normal_true, *loss_mask; /* normal: NULL of the first scale */
 } nfps_stage_place;
 

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-/* Photometric stereo under known near lights by a network (model/nfps/nfps.h): normals at a coarse scale, and at each
+/* Photometric stereo under known near lights by a network (model/nfps.h): normals at a coarse scale, and at each
  * finer one better ones from them and from the depth that they integrate to.
  *
  *     nfps_network *n;
  *     status s = nfps_network_open("merlin-nfps.safetensors", &n);
  *     if (s == OK) s = nfps_stereo(n, &capture, &(nfps_options){0}, &normal, &depth);
  */
-#ifndef MERLIN_PHOTO_STEREO_NFPS_STEREO_H
-#define MERLIN_PHOTO_STEREO_NFPS_STEREO_H
+#ifndef MERLIN_NFPS_NFPS_STEREO_H
+#define MERLIN_NFPS_NFPS_STEREO_H
 
-#include "photo_stereo/nfps_network.h"
+#include "nfps/nfps_network.h"
 #include "stereo/capture/capture.h"
 
 typedef struct nfps_options {

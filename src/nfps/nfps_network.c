@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "photo_stereo/nfps_network.h"
+#include "nfps/nfps_network.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -51,7 +51,8 @@ static status run(nn_program *p, const nfps_scene *scene, const float *images, c
     float *workspace = malloc((size_t)scene->pictures * scene->pixels * sizeof *workspace);
     float *mask = nn_input_data(p, "mask");
     if (!workspace) return fail(MERLIN_NO_MEMORY, "no memory for %d pictures", scene->pictures);
-    nfps_encode(scene, images, workspace, nn_input_data(p, "picture"), nn_input_data(p, "light"));
+    const nfps_arrays in = {nn_input_data(p, "picture"), nn_input_data(p, "light"), nn_input_data(p, "matte")};
+    nfps_encode(scene, images, workspace, &in);
     free(workspace);
     for (size_t i = 0; i < scene->pixels; i++)
         mask[i] = scene->mask[i] > 0.5f ? 1 : 0;

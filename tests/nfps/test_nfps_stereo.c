@@ -8,7 +8,7 @@
 
 #include "model/model.h"
 #include "model/model_export.h"
-#include "photo_stereo/nfps_stereo.h"
+#include "nfps/nfps_stereo.h"
 
 /* last, as cmocka defines a macro named fail */
 #include <setjmp.h>

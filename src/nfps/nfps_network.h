@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The network of near lights (model/nfps/nfps.h) of a weights file, one scale at a time.
+/* The network of near lights (model/nfps.h) of a weights file, one scale at a time.
  *
  *     nfps_network *n;
  *     status s = nfps_network_open("merlin-nfps.safetensors", &n);
@@ -7,11 +7,11 @@
  *     if (s == OK) s = nfps_network_run(n, &finer, 64, larger_images, larger_normal, finer_normal);
  *     nfps_network_close(n);
  */
-#ifndef MERLIN_PHOTO_STEREO_NFPS_NETWORK_H
-#define MERLIN_PHOTO_STEREO_NFPS_NETWORK_H
+#ifndef MERLIN_NFPS_NFPS_NETWORK_H
+#define MERLIN_NFPS_NFPS_NETWORK_H
 
 #include "base/status.h"
-#include "model/nfps/nfps_inputs.h"
+#include "nfps/nfps_inputs.h"
 
 typedef struct nfps_network nfps_network;
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "photo_stereo/nfps_stereo.h"
+#include "nfps/nfps_stereo.h"
 
 #include <math.h>
 #include <stdlib.h>

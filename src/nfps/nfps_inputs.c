@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-#include "model/nfps/nfps_inputs.h"
+#include "nfps/nfps_inputs.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/number.h"
-#include "model/nfps/nfps.h"
+#include "model/nfps.h"
+#include "nfps/nfps_matte.h"
 #include "optics/led.h"
 
 /* Limits: a light's strength relative to the mean, below which a picture says little and would be raised to noise; the
@@ -112,12 +113,13 @@ static void encode_pixel(const nfps_scene *scene, const float *images, const flo
     }
 }
 
-void nfps_encode(const nfps_scene *scene, const float *images, float *workspace, float *picture, float *light)
+void nfps_encode(const nfps_scene *scene, const float *images, float *workspace, const nfps_arrays *out)
 {
     const size_t all = (size_t)scene->pictures * scene->pixels;
-    memset(picture, 0, NFPS_PICTURE * all * sizeof *picture);
-    memset(light, 0, NFPS_LIGHT * all * sizeof *light);
-    const float mean = light_up(scene, workspace, light), unit = weigh(scene, images, mean, workspace, light);
+    memset(out->picture, 0, NFPS_PICTURE * all * sizeof *out->picture);
+    memset(out->light, 0, NFPS_LIGHT * all * sizeof *out->light);
+    const float mean = light_up(scene, workspace, out->light), unit = weigh(scene, images, mean, workspace, out->light);
     for (size_t i = 0; i < scene->pixels; i++)
-        if (scene->mask[i] > 0.5f) encode_pixel(scene, images, workspace, unit, i, picture);
+        if (scene->mask[i] > 0.5f) encode_pixel(scene, images, workspace, unit, i, out->picture);
+    nfps_matte(scene, images, workspace, out->light, out->matte);
 }

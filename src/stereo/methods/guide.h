@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: MIT */
+/* Who finds a surface under near lights in another way, such as a network: where a search may begin, or the result. */
+#ifndef MERLIN_STEREO_METHODS_GUIDE_H
+#define MERLIN_STEREO_METHODS_GUIDE_H
+
+#include "stereo/capture/capture.h"
+
+typedef struct pst_guide {
+    /* Makes normals (3 channels, unit) and depth (1 channel) of the pictures' size; the capture's lights have
+     * positions, and its camera a focal length and a distance, which is the depth's mean. */
+    status (*find)(const void *context, const merlin_capture *c, const watch *w, img *normal, img *depth);
+    const void *context;
+} pst_guide;
+
+#endif
