@@ -155,10 +155,11 @@ typedef struct merlin_surface {
                            * camera.distance (1 if that is unknown) */
     int strengths_unsure; /* MERLIN_STEREO_SEMI: the object is too flat, or the pictures are too few (3), to determine
                            * the lights' intensities: normals may have large errors */
-    int distance_unsure;  /* MERLIN_STEREO_NEAR without a known distance: the lights are too few, or too similar, to
-                           * determine it: normals may have large errors */
-    int lights_unsure;    /* MERLIN_STEREO_UNCALIBRATED: the pictures or the object's outline hardly determine them:
-                           * normals may have large errors, or be convex where the object is concave */
+    int by_network; /* MERLIN_STEREO_NEAR and _NFPS: a network's surface is the result, or where its search began */
+    int distance_unsure;      /* MERLIN_STEREO_NEAR without a known distance: the lights are too few, or too similar, to
+                               * determine it: normals may have large errors */
+    int lights_unsure;        /* MERLIN_STEREO_UNCALIBRATED: the pictures or the object's outline hardly determine them:
+                               * normals may have large errors, or be convex where the object is concave */
     merlin_warnings warnings; /* what contradicts the pictures, their lights and the result (docs/json.md lists the
                                * codes), including these three; empty if params.unchecked */
     int keep_edges;           /* params.keep_edges */
@@ -187,9 +188,10 @@ typedef struct merlin_near_network merlin_near_network;
  * another model's. */
 merlin_status merlin_near_network_open(const char *weights, merlin_near_network **out);
 void merlin_near_network_close(merlin_near_network *network);
-/* Computes the surface like merlin_stereo, with a network besides. MERLIN_STEREO_NFPS: its normals and depth, from the
- * pictures at up to 512 pixels a side and at most 64 of them, evenly chosen. MERLIN_STEREO_NEAR, also as AUTO chooses
- * it: the search for the depth begins at the network's, too, and the surface that explains the pictures better is kept.
+/* Computes the surface like merlin_stereo, with a network besides; NULL: without. MERLIN_STEREO_NFPS: its normals and
+ * depth, from the pictures at up to 512 pixels a side and at most 64 of them, evenly chosen. MERLIN_STEREO_NEAR, also
+ * as AUTO chooses it: each pixel's fit begins with the network's normal and depth, which few lights do not tell by
+ * themselves, unless there are eight lights or more and what is found without it explains the pictures far better.
  * Other methods do without it. */
 merlin_status merlin_stereo_by_network(const merlin_near_network *network, const merlin_capture *capture,
                                        const merlin_stereo_params *params, merlin_surface *out);

@@ -13,7 +13,7 @@ from . import _headers as h
 from . import mesh, pictures
 from ._call import Owner, ProgressCallback, StopCallback, Watch, by_channel, call, check, choice, floats, is_path
 from ._call import optional_path, path_bytes, real, taken_text, vector3, view, whole
-from ._library import weights_path
+from ._library import shipped_weights, weights_path
 from .errors import WrongUseError
 from .mesh import Mesh
 from .pictures import PathLike, Picture
@@ -29,7 +29,14 @@ LIGHTING = {"distant": h.DISTANT_LIGHTS, "near": h.NEAR_LIGHTS, "unknown": h.UNK
 NOWHERE = (0.0, 0.0, 0.0)
 
 
-def _near_network(weights: Optional[PathLike]) -> Owner:
+def _near_network(method: str, weights: Optional[PathLike]) -> Optional[Owner]:
+    """As the command has it: with what ships, where it is there, unless the method has no use for it."""
+    if method not in ("auto", "near", "nfps"):
+        if weights is not None:
+            raise WrongUseError(f"the method {method} takes no weights")
+        return None
+    if weights is None and method != "nfps" and shipped_weights("merlin-nfps") is None:
+        return None
     network = Owner(ctypes.c_void_p(), "near_network_close")
     path = weights_path("merlin-nfps" if weights is None else weights)
     check("near_network_open", path, network.at, path=os.fsdecode(path))
@@ -121,20 +128,17 @@ class Capture:
         method: "auto" (by what is known of the lights), "ls", "robust", "near", "nfps" (near lights by a network),
         "semi" or "uncalibrated". keep_edges: depth may jump where the normals say so. integrate: depth that is solved
         with the normals is integrated from them once more. iterations: at most, of "near" and "semi"; 0: the method's own. check_result: hold the result
-        against other lights, lenses and tones, for warnings. weights: of "nfps"; None: those that ship. Progress and
-        stop: as of Model.estimate."""
+        against other lights, lenses and tones, for warnings. weights: of the network of
+        near lights, with which "nfps" solves and "near" begins; None: those that ship. Progress and stop: as of
+        Model.estimate."""
         params = h.StereoParams(choice(method, METHODS, "method"), int(keep_edges), int(integrate),
                                 whole(iterations, "iterations"), int(not check_result))
         watch = Watch(progress, stop)
         watch.put(params)
         owner = Owner(h.Surface(), "surface_free")
-        if weights is not None and params.method != h.STEREO_NFPS:
-            raise WrongUseError("weights are for the method nfps")
-        if params.method == h.STEREO_NFPS:
-            network = _near_network(weights)
-            watch.check("stereo_by_network", network.struct, self._owner.struct, ctypes.byref(params), owner.at)
-        else:
-            watch.check("stereo", self._owner.struct, ctypes.byref(params), owner.at)
+        network = _near_network(method, weights)
+        watch.check("stereo_by_network", None if network is None else network.struct, self._owner.struct,
+                    ctypes.byref(params), owner.at)
         surface = Surface(owner)
         warn(surface.warnings)
         return surface
@@ -226,6 +230,8 @@ class Surface:
         self.lights_near: bool = bool(struct.lights_near)  #: the found lights have positions, too
         self.strengths_unsure: bool = bool(struct.strengths_unsure)
         self.distance_unsure: bool = bool(struct.distance_unsure)
+        #: whether "near" began with a network's surface, or "nfps" has it
+        self.by_network: bool = bool(struct.by_network)
         self.lights_unsure: bool = bool(struct.lights_unsure)
         #: what speaks against the pictures, their lights and the result, the gravest first
         self.warnings: Tuple[Notice, ...] = notices(struct.warnings)

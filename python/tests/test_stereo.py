@@ -63,6 +63,18 @@ def test_near_lights_have_positions(sphere):
     assert surface.method == "near" and surface.camera.focal > 0
 
 
+def test_near_lights_by_a_network(sphere):
+    """Alone, and as what the fits begin with."""
+    lights, pictures, _normal, inside = sphere
+    near = {"positions": lights * [1, 1, -1], "mask": inside, "field_of_view": 30, "distance": 1, "check_result": False}
+    alone = merlin.stereo(list(pictures), method="nfps", **near)
+    assert alone.method == "nfps" and alone.by_network
+    assert (alone.normal[inside & (alone.mask > 0)][:, 2] > 0).all()
+    assert merlin.stereo(list(pictures), **near).by_network
+    with pytest.raises(merlin.WrongUseError, match="takes no weights"):
+        merlin.stereo(list(pictures), lights, mask=inside, method="ls", weights="merlin-nfps")
+
+
 def test_intensities_are_used(sphere):
     """A number or three a picture, or found."""
     lights, pictures, normal, inside = sphere

@@ -125,13 +125,14 @@ static status announce(const request *r, const serve *server)
 }
 
 /* Prepares the network before the first photograph arrives. */
-static status open_models(const request *r, merlin_model **model)
+static status open_models(const request *r, merlin_model **model, merlin_near_network **near)
 {
     char *weights = NULL, *flash = NULL;
     const merlin_params params = merlin_params_default();
     status s = photo_find_models(r->model_name, &weights, &flash);
     if (s == OK) s = photo_open_models(weights, flash, model);
     if (s == OK) s = photo_add_several(flash, *model);
+    if (s == OK) s = photo_open_near(NULL, false, near);
     if (s == OK) s = merlin_model_prepare(*model, &params);
     free(weights);
     free(flash);
@@ -148,15 +149,18 @@ int cmd_serve(int argc, char **argv)
                             .upload_megabytes = 256,
                             .megapixels = 50}};
     serve *server = NULL;
+    merlin_near_network *near = NULL;
     status s = parse(&argc, &argv, &r);
     if (s != OK) return cli_refuse("serve", s);
     if (r.help) return fputs(help, stdout) < 0;
     cli_catch_interrupts();
-    s = open_models(&r, &r.params.model);
+    s = open_models(&r, &r.params.model, &near);
+    r.params.near = near;
     if (s == OK) s = serve_open(&r.params, &server);
     if (s == OK) s = announce(&r, server);
     if (s == OK) serve_run(server, cli_interrupted);
     serve_close(server);
     merlin_model_close(r.params.model);
+    merlin_near_network_close(near);
     return s == OK ? 0 : cli_fail("serve", s);
 }

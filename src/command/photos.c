@@ -364,12 +364,16 @@ status photo_find_several(const char *asked, char **path)
     return asked ? photo_find_model(asked, path) : find_shipped("merlin-several", path);
 }
 
-status photo_find_near(const char *asked, char **path)
+status photo_open_near(const char *asked, bool needed, merlin_near_network **out)
 {
-    *path = NULL;
-    status s = asked ? photo_find_model(asked, path) : find_shipped("merlin-nfps", path);
-    if (s != OK || *path) return s;
-    return fail(MERLIN_BAD_INPUT, "method nfps: no models/merlin-nfps.safetensors near the program: give --model");
+    char *path = NULL;
+    *out = NULL;
+    status s = asked ? photo_find_model(asked, &path) : find_shipped("merlin-nfps", &path);
+    if (s == OK && path) s = merlin_near_network_open(path, out);
+    if (s == OK && !path && needed)
+        s = fail(MERLIN_BAD_INPUT, "method nfps: no models/merlin-nfps.safetensors near the program: give --model");
+    free(path);
+    return s;
 }
 
 status photo_add_several(const char *flash, merlin_model *model)

@@ -9,6 +9,7 @@
 
 #include "base/status.h"
 #include "command/photo_list.h"
+#include "merlin/stereo.h"
 
 /* Makes the list. The results of one photograph go to `output`, by default its name without ending + ".merlin".
  * Several, or a folder's, each have a folder of their own inside `output`, by default next to them. `mask` is one
@@ -58,9 +59,9 @@ status photo_find_models_of(const merlin_maps *maps, const char *asked, char **p
  * there, else *path is NULL. malloc'ed. */
 status photo_find_several(const char *asked, char **path);
 
-/* Finds weights of a network of near lights (merlin/stereo.h), by a name or a path; asked NULL: merlin-nfps.
- * MERLIN_BAD_INPUT if there are none; malloc'ed. */
-status photo_find_near(const char *asked, char **path);
+/* Opens a network of near lights (merlin/stereo.h), of weights by a name or a path; asked NULL: merlin-nfps. Where that
+ * is not there *out is NULL, and MERLIN_BAD_INPUT if it is needed. */
+status photo_open_near(const char *asked, bool needed, merlin_near_network **out);
 
 /* Adds merlin-several, where it is there, to a model of weights that were not chosen; flash: what photo_find_models
  * found, NULL of chosen weights, which stand alone. */

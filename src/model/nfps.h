@@ -24,7 +24,7 @@
 #include "model/model_part.h"
 #include "nn/nn.h"
 
-enum { NFPS_PICTURE = 4, NFPS_LIGHT = 5, NFPS_MATTE = 4 };
+enum { NFPS_PICTURE = 4, NFPS_LIGHT = 5, NFPS_MATTE = 5 };
 
 /* Builds the network's part into g: MODEL_WHOLE, MODEL_TRAINING (of any losses), MODEL_FIRST or MODEL_REFINE;
  * MERLIN_WRONG_USE for those that only networks of one photograph have. */

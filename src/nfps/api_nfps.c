@@ -33,16 +33,11 @@ void merlin_near_network_close(merlin_near_network *network)
     free(network);
 }
 
-static status find(const void *context, const merlin_capture *c, const watch *w, img *normal, img *depth)
-{
-    const merlin_near_network *n = context;
-    return nfps_stereo(n->network, c, &(nfps_options){.watch = w}, normal, depth);
-}
-
 merlin_status merlin_stereo_by_network(const merlin_near_network *network, const merlin_capture *capture,
                                        const merlin_stereo_params *params, merlin_surface *out)
 {
     if (out) *out = (merlin_surface){0};
-    status s = api_needs(__func__, network && capture && out);
-    return s == OK ? pst_stereo_guided(capture, params, &(pst_guide){find, network}, out) : s;
+    status s = api_needs(__func__, capture && out);
+    const pst_guide guide = network ? nfps_guide(network->network) : (pst_guide){0};
+    return s == OK ? pst_stereo_guided(capture, params, network ? &guide : NULL, out) : s;
 }

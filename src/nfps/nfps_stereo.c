@@ -257,3 +257,13 @@ status nfps_stereo(const nfps_network *n, const merlin_capture *c, const nfps_op
     }
     return s;
 }
+
+static status find(const void *context, const merlin_capture *c, const watch *w, img *normal, img *depth)
+{
+    return nfps_stereo(context, c, &(nfps_options){.watch = w}, normal, depth);
+}
+
+pst_guide nfps_guide(const nfps_network *n)
+{
+    return (pst_guide){find, n};
+}

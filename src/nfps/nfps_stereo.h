@@ -11,6 +11,7 @@
 
 #include "nfps/nfps_network.h"
 #include "stereo/capture/capture.h"
+#include "stereo/methods/guide.h"
 
 typedef struct nfps_options {
     bool estimated;     /* the lights are estimates, off by several degrees */
@@ -23,5 +24,8 @@ typedef struct nfps_options {
  * MERLIN_BAD_INPUT for fewer than 2 pictures, MERLIN_STOPPED, MERLIN_NO_MEMORY. */
 status nfps_stereo(const nfps_network *n, const merlin_capture *c, const nfps_options *options, img *normal,
                    img *depth);
+
+/* Returns the guide who tells what this network finds, for pst_stereo_guided; n is borrowed. */
+pst_guide nfps_guide(const nfps_network *n);
 
 #endif

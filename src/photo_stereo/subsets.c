@@ -7,9 +7,9 @@
 
 enum { SEED = 1, STREAM_SUBSET = 2 };
 
-int subset_count(const merlin_capture *all)
+int subset_count(const merlin_capture *all, int pictures)
 {
-    return all->count > SUBSET_PICTURES ? SUBSETS : 1;
+    return all->count > pictures ? SUBSETS : 1;
 }
 
 /* Selects the first pictures of a shuffled order, borrowed. */
@@ -35,7 +35,7 @@ static void choose(const merlin_capture *all, int subset, merlin_capture *some)
     }
 }
 
-status subset_new(const merlin_capture *all, int subset, merlin_capture *out)
+status subset_new(const merlin_capture *all, int subset, int pictures, merlin_capture *out)
 {
     const size_t count = (size_t)all->count;
     *out = *all;
@@ -46,7 +46,7 @@ status subset_new(const merlin_capture *all, int subset, merlin_capture *out)
         subset_free(out);
         return fail(MERLIN_NO_MEMORY, "no memory for %d lights", all->count);
     }
-    if (out->count > SUBSET_PICTURES) out->count = SUBSET_PICTURES;
+    if (out->count > pictures) out->count = pictures;
     choose(all, subset, out);
     return OK;
 }
@@ -63,7 +63,7 @@ status subset_solve(const merlin_capture *all, int subset, merlin_stereo_method 
 {
     merlin_capture some;
     *out = (merlin_surface){0};
-    status s = subset_new(all, subset, &some);
+    status s = subset_new(all, subset, SUBSET_PICTURES, &some);
     if (s != OK) return s;
     if (method == MERLIN_STEREO_UNCALIBRATED) pst_capture_forget_lights(&some);
     s = pst_solve(&some, &(merlin_stereo_params){.method = method}, out);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Photometric stereo from random subsets of a capture: the paper's protocol draws 32 of 50 pictures, five times.
  *
- *     for (int i = 0; i < subset_count(&capture); i++) {
+ *     for (int i = 0; i < subset_count(&capture, SUBSET_PICTURES); i++) {
  *         merlin_surface found;
  *         status s = subset_solve(&capture, i, MERLIN_STEREO_AUTO, &found);
  *         ...
@@ -14,12 +14,13 @@
 
 enum { SUBSETS = 5, SUBSET_PICTURES = 32 };
 
-/* Returns SUBSETS, or 1 for a capture of at most SUBSET_PICTURES, which is always used completely. */
-int subset_count(const merlin_capture *all);
-/* Makes subset number `subset`, the same for every capture of as many pictures, which it borrows. MERLIN_NO_MEMORY. */
-status subset_new(const merlin_capture *all, int subset, merlin_capture *out);
+/* Returns SUBSETS, or 1 for a capture of at most so many pictures, which is always used completely. */
+int subset_count(const merlin_capture *all, int pictures);
+/* Makes subset number `subset` of so many pictures, the same for every capture of as many, which it borrows.
+ * MERLIN_NO_MEMORY. */
+status subset_new(const merlin_capture *all, int subset, int pictures, merlin_capture *out);
 void subset_free(merlin_capture *subset);
-/* Solves subset number `subset`. MERLIN_STEREO_UNCALIBRATED does not get the lights. */
+/* Solves subset number `subset` of SUBSET_PICTURES. MERLIN_STEREO_UNCALIBRATED does not get the lights. */
 status subset_solve(const merlin_capture *all, int subset, merlin_stereo_method method, merlin_surface *out);
 
 #endif

@@ -128,6 +128,7 @@ static status begin(const serve_params *p, serve *s)
     if (done != OK) return done;
     s->site.store = s->store;
     const jobs_params queue = {.model = p->model,
+                               .near = p->near,
                                .store = s->store,
                                .limits = s->site.work_limits,
                                .most_waiting = (size_t)p->most_waiting,

@@ -15,12 +15,14 @@
 
 #include "base/status.h"
 #include "merlin/model.h"
+#include "merlin/stereo.h"
 #include "serve/http/guard.h"
 
 typedef struct serve serve;
 
 typedef struct serve_params {
     merlin_model *model;
+    const merlin_near_network *near;      /* of near lights; NULL: none */
     const char *host;                     /* NULL: this machine alone, 127.0.0.1 */
     const char *names[GUARD_MOST_NAMES];  /* further ones by which clients call it; ended by NULL */
     const char *token;                    /* NULL: none, with `host` one is made up */

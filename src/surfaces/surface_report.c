@@ -51,6 +51,7 @@ static void put_captured(cJSON *report, const merlin_surface *s, const figures *
     if (s->lights) put_lights(report, s);
     if (s->method == MERLIN_STEREO_SEMI) json_put_bool(report, "strengths_unsure", s->strengths_unsure);
     if (s->method == MERLIN_STEREO_NEAR) json_put_bool(report, "distance_unsure", s->distance_unsure);
+    if (s->method == MERLIN_STEREO_NEAR) json_put_bool(report, "by_network", s->by_network);
     if (s->method == MERLIN_STEREO_UNCALIBRATED) json_put_bool(report, "lights_unsure", s->lights_unsure);
     json_put_number(report, "seconds_solve", s->seconds.solve);
     json_put_number(report, "seconds_integrate", s->seconds.integrate);

@@ -42,12 +42,22 @@ grep -q 'how far the object is' stderr || complain "stderr: $(cat stderr)"
 succeeds '"distance_unsure":false' stereo leds --lights near.txt --near --distance 1 --json
 [ -s stderr ] && complain "stderr: $(cat stderr)"
 
+echo "a network of near lights solves them, too"
+"$TINY_MODEL" nfps.safetensors nfps || complain "no weights of near lights"
+near=(stereo leds --lights near.txt --near --distance 1 --method nfps --json)
+succeeds '"method":"nfps","pictures":3' "${near[@]}" --model nfps.safetensors -o nfps
+present "${files[@]/#/nfps/}" nfps/confidence.png
+refuses 1 'model "tiny" is none for pictures under known lights' "${near[@]}" --model weights.safetensors
+refuses 2 'needs light positions, which this capture does not have' stereo dome --method nfps --model nfps.safetensors
+refuses 2 'nfps is for a folder of pictures' stereo disc.hdr --method nfps
+refuses 2 'are for one photograph' "${near[@]}" --model nfps.safetensors --size 64
+
 echo "whether unknown lights are told is said"
 "$MERLIN" relight disc.merlin --dome 8 -o unknown --quiet || complain "no pictures under a dome"
 succeeds '"lights_unsure":' stereo unknown --method uncalibrated --json
 
 refuses 2 'takes no --lights and no --near' stereo dome --method universal --near
-refuses 2 'ls, robust, near, semi, universal, uncalibrated or auto' stereo dome --method magic
+refuses 2 'ls, robust, near, nfps, semi, universal, uncalibrated or auto' stereo dome --method magic
 
 echo "meshes by name, depth that may jump"
 echo "a surface can be relit"

@@ -60,6 +60,8 @@ static void capture_of(merlin_capture *c)
     assert_int_equal(img_new(&c->mask, WIDTH, HEIGHT, 1), OK);
     for (int k = 0; k < LIGHTS; k++) {
         c->light[k].position[0] = (float)(k - 2) * 0.3f;
+        c->light[k].position[1] = (float)(k % 2) * 0.3f;
+        c->name[k] = strdup("light");
         c->picture[k] = calloc(WIDTH * HEIGHT, sizeof **c->picture);
         assert_non_null(c->picture[k]);
     }
@@ -96,6 +98,36 @@ static void maps_are_whole_and_in_their_units(void **state)
     img_free(&depth);
     pst_capture_free(&c);
     nfps_network_close(n);
+}
+
+/* The library's functions: the surface has the network's normals, and near begins with them if it is told to. */
+static void surfaces_come_by_the_network(void **state)
+{
+    (void)state;
+    const model_config config = {.name = "tiny", .nfps_width = 8};
+    char *folder = scratch_new();
+    merlin_near_network *n = NULL;
+    merlin_surface s;
+    merlin_capture c;
+    capture_of(&c);
+    assert_int_equal(merlin_near_network_open("/nowhere/w.safetensors", &n), MERLIN_BAD_INPUT);
+    assert_null(n);
+    assert_int_equal(merlin_near_network_open(weights_of(folder, &config), &n), OK);
+    const merlin_stereo_method methods[] = {MERLIN_STEREO_NFPS, MERLIN_STEREO_NEAR};
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(merlin_stereo_by_network(n, &c, &(merlin_stereo_params){.method = methods[i]}, &s), OK);
+        assert_int_equal(s.method, methods[i]);
+        assert_true(s.by_network);
+        for (int k = 0; k < WIDTH * HEIGHT; k++)
+            assert_true((s.depth.data[k] > 0) == (c.mask.data[k] > 0.5f) && s.albedo.data[k] >= 0);
+        merlin_surface_free(&s);
+    }
+    assert_int_equal(merlin_stereo(&c, &(merlin_stereo_params){.method = MERLIN_STEREO_NFPS}, &s), MERLIN_WRONG_USE);
+    const merlin_stereo_params nfps = {.method = MERLIN_STEREO_NFPS};
+    assert_int_equal(merlin_stereo_by_network(NULL, &c, &nfps, &s), MERLIN_WRONG_USE);
+    merlin_near_network_close(n);
+    pst_capture_free(&c);
+    scratch_remove(folder);
 }
 
 static int stops(void)
@@ -135,6 +167,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(maps_are_whole_and_in_their_units),
+        cmocka_unit_test(surfaces_come_by_the_network),
         cmocka_unit_test(what_it_cannot_do_is_said),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -262,8 +262,11 @@ static void a_guide_who_is_wrong_does_no_harm(void **state)
     c.camera.distance = mean;
     assert_int_equal(img_copy(&normal, &c.normal_true), OK);
     assert_int_equal(img_copy(&depth, &c.depth_true), OK);
-    for (int i = 0; i < SIZE * SIZE; i++) /* a bowl instead of a ball */
+    for (int i = 0; i < SIZE * SIZE; i++) { /* a bowl instead of a ball */
         if (c.mask.data[i] > 0.5f) depth.data[i] = 2 * mean - depth.data[i];
+        normal.data[3 * i] *= -1;
+        normal.data[3 * i + 1] *= -1;
+    }
     told t = {&normal, &depth, mean, 0};
     assert_int_equal(pst_solve_guided(&c, &(merlin_stereo_params){0}, &(pst_guide){tell, &t}, &s), OK);
     assert_int_equal(s.method, MERLIN_STEREO_NEAR);

@@ -69,7 +69,7 @@ static const char help[] =
     "  -o, --output DIR     where to (default: stereo inside DIR, or inside the photograph's name + .merlin)\n"
     "      --model W, --size N, --views N, --exposure EV, --point X,Y, --box X,Y,W,H\n"
     "                       for a PHOTO, as in merlin estimate, and for pictures without lights, except --exposure;\n"
-    "                       --model also for MAPS and --method nfps\n"
+    "                       --model also for MAPS, and for --method nfps and near\n"
     "      --json           the report on standard output\n"
     "  -t, --threads N      how many threads work (default: one a processor)\n"
     "  -q, --quiet          no other output than errors\n"
@@ -158,7 +158,7 @@ static status check_maps(const request *r)
 /* Refuses options of the network where none sees the pictures. */
 static status check_no_network(const request *r)
 {
-    const bool sees_lights = r->solve.method == MERLIN_STEREO_NFPS; /* by weights of its own */
+    const bool sees_lights = r->solve.method == MERLIN_STEREO_NFPS || r->solve.method == MERLIN_STEREO_NEAR;
     if ((!r->weights || sees_lights) && !photo_params_given(&r->params)) return OK;
     return fail(MERLIN_WRONG_USE,
                 "--model, --size, --views, --exposure, --point and --box are for one photograph, or pictures without a "
@@ -276,14 +276,13 @@ static status from_photo(const request *r, merlin_surface *out)
 
 static status from_capture(const request *r, const merlin_capture *capture, merlin_surface *out)
 {
-    char *weights = NULL;
+    const merlin_stereo_method m = r->solve.method;
     merlin_near_network *network = NULL;
-    if (r->solve.method != MERLIN_STEREO_NFPS) return merlin_stereo(capture, &r->solve, out);
-    status s = photo_find_near(r->weights, &weights);
-    if (s == OK) s = merlin_near_network_open(weights, &network);
+    status s = OK;
+    if (m == MERLIN_STEREO_AUTO || m == MERLIN_STEREO_NEAR || m == MERLIN_STEREO_NFPS)
+        s = photo_open_near(r->weights, m == MERLIN_STEREO_NFPS, &network);
     if (s == OK) s = merlin_stereo_by_network(network, capture, &r->solve, out);
     merlin_near_network_close(network);
-    free(weights);
     return s;
 }
 

@@ -141,6 +141,7 @@ static status work_on(jobs *q, job *j)
     listener t = {q, j};
     cJSON *report = report_begin(NULL);
     const work_context context = {.model = q->params.model,
+                                  .near = q->params.near,
                                   .store = q->params.store,
                                   .form = &j->form,
                                   .limits = &q->params.limits,

@@ -20,6 +20,7 @@ typedef struct jobs jobs;
 
 typedef struct jobs_params {
     merlin_model *model;
+    const merlin_near_network *near; /* NULL: none */
     const store *store;
     work_limits limits;
     size_t most_waiting;

@@ -24,6 +24,7 @@ typedef struct work_limits {
 
 typedef struct work_context {
     merlin_model *model;
+    const merlin_near_network *near; /* NULL: none */
     const store *store;
     const form *form;
     const work_limits *limits;

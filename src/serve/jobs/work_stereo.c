@@ -203,7 +203,7 @@ static status solve_pictures(const work_context *w, const stereo_request *r, con
 {
     merlin_capture *capture = NULL;
     status s = read_capture(w, r, &capture);
-    if (s == OK) s = merlin_stereo(capture, params, out);
+    if (s == OK) s = merlin_stereo_by_network(w->near, capture, params, out);
     merlin_capture_free(capture);
     return s;
 }

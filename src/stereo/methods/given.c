@@ -15,6 +15,7 @@ status pst_solve_given(const pst_problem *p, merlin_surface *out)
     if (!shading) return fail(MERLIN_NO_MEMORY, "no memory to fit %zu pixels", p->pixel_count);
     for (size_t i = 0; i < p->pixel_count; i++)
         shading[i].normal = pst_facing(vec3_of(p->expected->normal->data + 3 * (size_t)p->pixel[i]));
+    out->by_network = 1;
     status s = img_copy(&out->depth, p->expected->depth);
     const pst_field f = {.problem = p,
                          .pixel = p->pixel,

@@ -2,8 +2,7 @@
 /* Photometric stereo with near point lights and a perspective camera by alternation (the scheme of Logothetis, Mecca &
  * Cipolla, Semi-calibrated near field photometric stereo, CVPR 2017, with a robust fit for the normals): a depth map
  * gives each pixel its own light vectors, inverse-square attenuation and LED lobes; these give its normal
- * (field_fit.h); and the normals give a depth map by integration. The first depth map is a plane that faces the camera;
- * where a depth map is expected, the search begins there, too, and what explains the pictures better is kept.
+ * (field_fit.h); and the normals give a depth map by integration. The first depth map is a plane that faces the camera.
  *
  * Normals do not determine how far behind another a part of the object lies, and integration alone joins parts that
  * only touch in the picture. The lights do: each pixel's fit also yields the distance at which it would agree better
@@ -11,6 +10,10 @@
  * place the part.
  *
  * Most rounds use a small version of the pictures (smaller_problem.h), which determines the depth nearly as well.
+ *
+ * Where a surface is expected, the fits begin with its normals and depth, and find the explanation nearest to it: of
+ * few lights many surfaces explain the pictures, and of many lights there is less to search. From ENOUGH lights on the
+ * depth that is searched for without it is preferred if it explains the pictures far better.
  *
  * If the camera's mean distance is known, the depth keeps it until parts have found their positions (afterwards
  * remaining errors in dark regions must not move the rest); otherwise the lights determine it, too. With few lights the
@@ -31,6 +34,11 @@
  * start, since the depth is far off; ADMISSIONS: rounds until it suffices to decide about a lobe; STEPPED: rounds with
  * steps in depth at the end. */
 enum { ITERATIONS = 12, SAMPLE = 192, SMALL = 1500, ANEW = 3, ADMISSIONS = 2, STEPPED = 2, SWEEPS = 2 };
+
+/* ROUNDS: from what is expected. ENOUGH: lights from which on costs tell a wrong surface; far_better: by this factor.
+ */
+enum { ROUNDS = 3, ENOUGH = 8 };
+static const double far_better = 0.7;
 
 /* Rounds end when depths change by less than this share of the distance on average. */
 static const float settled = 3e-4f;
@@ -256,52 +264,18 @@ static status iterate(near_job *job)
     return s;
 }
 
-/* Searches from the depth that is there, at the known or most likely distance. */
-static status search_depth(near_job *job, float distance)
-{
-    float scale = 1;
-    job->held_at = job->camera.distance = distance;
-    status s = OK;
-    if (!(distance > 0)) {
-        job->camera.distance = fmaxf(light_reach(job->problem->capture), 1e-6f);
-        s = best_scale(job, 1.3f, 8, true, &scale);
-    }
-    rescale(job, scale);
-    return s == OK ? iterate(job) : s;
-}
-
-/* Searches from the expected depth, too, and keeps that if it costs less. */
-static status search_expected(near_job *job, float distance)
-{
-    near_job other = *job;
-    merlin_surface found = {.normal = job->out->normal};
-    double here, there;
-    other.out = &found;
-    status s = img_copy(&found.depth, &job->out->depth);
-    if (s == OK) fill_first(&other);
-    if (s == OK) s = search_depth(&other, distance);
-    if (s == OK) s = cost_at(job, 1, true, &here);
-    if (s == OK) s = cost_at(&other, 1, true, &there);
-    if (s == OK && there < here) {
-        const img depth = job->out->depth;
-        merlin_surface *const out = job->out;
-        out->depth = found.depth;
-        found.depth = depth;
-        *job = other;
-        job->out = out;
-    }
-    img_free(&found.depth);
-    return s;
-}
-
-/* Finds the depth. */
+/* Finds the depth, starting from a plane at the known or most likely distance. */
 static status find_depth(near_job *job)
 {
     const pst_problem *p = job->problem;
     float distance = p->capture->camera.distance;
-    fill_plane(p, distance > 0 ? distance : fmaxf(light_reach(p->capture), 1e-6f), &job->out->depth);
-    status s = search_depth(job, distance);
-    if (s == OK && p->expected && p->expected->depth) s = search_expected(job, distance);
+    job->held_at = distance;
+    job->camera.distance = distance > 0 ? distance : fmaxf(light_reach(p->capture), 1e-6f);
+    fill_plane(p, job->camera.distance, &job->out->depth);
+    float scale = 1;
+    status s = distance > 0 ? OK : best_scale(job, 1.3f, 8, true, &scale);
+    rescale(job, scale);
+    if (s == OK) s = iterate(job);
     bool unsure = false;
     if (s == OK) s = check_distance(job, &unsure);
     job->out->distance_unsure = unsure && !(distance > 0);
@@ -367,17 +341,96 @@ static status fill_in(near_job *job)
     return s == OK ? place(job, placed, true) : s;
 }
 
-static status solve(near_job *job)
+/* ---- from what is expected ---- */
+
+static float mean_depth(const near_job *job)
 {
-    smaller_problem small;
-    status s = smaller_problem_new(job->problem, SMALL, &small);
-    if (s == OK) s = small.factor > 1 ? find_depth_small(job, &small) : find_depth(job);
-    smaller_problem_free(&small);
-    if (s == OK && small.factor > 1) s = fill_in(job);
+    const pst_problem *p = job->problem;
+    double sum = 0;
+    for (size_t i = 0; i < p->pixel_count; i++)
+        sum += (double)job->out->depth.data[p->pixel[i]];
+    return (float)(sum / (double)p->pixel_count);
+}
+
+/* Finds depth and normals from the expected ones. */
+static status find_from_expected(near_job *job)
+{
+    const pst_problem *p = job->problem;
+    const float distance = p->capture->camera.distance;
+    const pst_field f = whole_field(job);
+    bool unsure = false;
+    fill_first(job);
+    job->held_at = distance;
+    job->camera.distance = distance > 0 ? distance : mean_depth(job);
+    for (size_t i = 0; i < p->pixel_count; i++)
+        job->shading[i].normal = pst_facing(vec3_of(p->expected->normal->data + 3 * (size_t)p->pixel[i]));
+    status s = pst_field_albedo(&f);
+    if (s == OK && !(distance > 0)) s = check_distance(job, &unsure);
+    job->out->distance_unsure = unsure;
+    for (int k = 0; s == OK && k < ROUNDS; k++) {
+        s = fit_normals(job, false);
+        if (s == OK) s = place(job, placed, true);
+    }
+    return s;
+}
+
+/* Computes what the depth that is found one way costs, on the small pictures. */
+static status cost_of(const smaller_problem *small, status (*find)(near_job *job), double *cost)
+{
+    merlin_surface found = {0};
+    near_job job = {0};
+    status s = img_new(&found.normal, small->problem.capture->width, small->problem.capture->height, 3);
+    if (s == OK) s = job_new(&small->problem, &found, &job);
+    const pst_lobe usual = job.lobe;
+    if (s == OK) s = find(&job);
+    job.lobe = usual;
+    if (s == OK) s = cost_at(&job, 1, true, cost);
+    job_free(&job);
+    merlin_surface_free(&found);
+    return s;
+}
+
+/* Tells whether to begin with what is expected. */
+static status prefer_expected(const smaller_problem *small, bool *expected)
+{
+    double with, without;
+    *expected = small->problem.expected && small->problem.expected->depth;
+    if (!*expected || small->problem.capture->count < ENOUGH) return OK;
+    status s = cost_of(small, find_from_expected, &with);
+    if (s == OK) s = cost_of(small, find_depth, &without);
+    if (s == OK) *expected = without > far_better * with;
+    return s;
+}
+
+static status solve_expected(near_job *job)
+{
+    job->watch = job->problem->effort ? job->problem->effort->watch : NULL;
+    status s = find_from_expected(job);
+    if (s == OK) s = fit_normals(job, false);
+    const pst_field f = whole_field(job);
+    return s == OK ? pst_field_store(&f, job->out) : s;
+}
+
+static status solve_searching(near_job *job, const smaller_problem *small)
+{
+    status s = small->factor > 1 ? find_depth_small(job, small) : find_depth(job);
+    if (s == OK && small->factor > 1) s = fill_in(job);
     if (s == OK) s = fit_normals(job, false);
     pst_field f = whole_field(job);
     if (s == OK) s = pst_field_replace_outliers(&f, SWEEPS);
     return s == OK ? pst_field_store(&f, job->out) : s;
+}
+
+static status solve(near_job *job)
+{
+    smaller_problem small;
+    bool expected = false;
+    status s = smaller_problem_new(job->problem, SMALL, &small);
+    if (s == OK) s = prefer_expected(&small, &expected);
+    job->out->by_network = expected;
+    if (s == OK) s = expected ? solve_expected(job) : solve_searching(job, &small);
+    smaller_problem_free(&small);
+    return s;
 }
 
 status pst_near_distance(const pst_problem *p, float about, float *distance)

@@ -96,7 +96,7 @@ static void real_pictures_of_a_sample_give_its_normals(void **state)
     sample s = ball_sample(64, 34);
     stereo_object o;
     read_back(&s, &o);
-    assert_int_equal(subset_count(&o.capture), SUBSETS);
+    assert_int_equal(subset_count(&o.capture, SUBSET_PICTURES), SUBSETS);
     merlin_surface first, again, other;
     size_t pixels;
     assert_int_equal(subset_solve(&o.capture, 0, MERLIN_STEREO_AUTO, &first), OK);

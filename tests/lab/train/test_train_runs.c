@@ -76,6 +76,8 @@ static const struct run {
     {"table1/6", 0x6f6c0c471779f44b},
     {"table1/7", 0x2ec51ce69298f93f},
     {"table1/8", 0x9181f3473d1b2dcc},
+    {"table2/li-arithmetic", 0xf9c4e528d9231d03},
+    {"table2/sang-arithmetic", 0x2a4ceebc70a492be},
     {"table2/li", 0x4890f3c8ad78d028},
     {"table2/sang", 0xf699d3c05d61d008},
     {"merlin-any/07-128", 0xf269b25598af5e61},

@@ -24,9 +24,10 @@ static const char help[] =
     "  --method universal two rows more: by a network that sees the pictures of a draw together, lights unknown, as\n"
     "                     merlin stereo does (merlin-any and merlin-several)\n"
     "  --nfps W           two rows more: by weights of the network of near lights (configs/runs/merlin-nfps);\n"
-    "                     with --method universal also with lights that a network tells\n"
+    "                     with --method universal also with lights that a network tells; near begins with it, too\n"
     "  --count N          only the first N objects\n"
     "  --draws N          only the first N of the five draws\n"
+    "  --pictures N       draw so many instead of 32, from 3 on\n"
     "  --figure F.png     a picture of the normals and where they are off\n"
     "      --json         report on standard output as JSON\n"
     "  -t, --threads N    how many threads work (default: one a processor)\n"
@@ -50,6 +51,7 @@ static status parse(int *argc, char ***argv, request *r)
         {"nfps", .text = &r->options.nfps},
         {"count", .count = &r->options.count, .low = 1, .high = 100000000},
         {"draws", .integer = &r->options.draws, .low = 1, .high = SUBSETS},
+        {"pictures", .integer = &r->options.pictures, .low = 3, .high = 1000},
         {"figure", .picture = &r->options.figure},
         {"json", .flag = &r->json},
         {"quiet", 'q', .flag = &r->options.quiet},

@@ -55,7 +55,7 @@ void paper3_table_print(const paper3_table *t, FILE *stream)
 {
     char label[24];
     fprintf(stream, "Table 3: mean angular error in degrees over %zu objects; %d pictures drawn %d times\n\n",
-            t->of[0].count, SUBSET_PICTURES, t->of[0].draws);
+            t->of[0].count, t->of[0].pictures, t->of[0].draws);
     stereo_table_print_heading(&t->of[0], stream);
     fputs("single image\n", stream);
     for (int i = 0; i < t->count; i++) {

@@ -86,7 +86,7 @@ static void print_judge(const stereo_table *t, const char *name, stereo_row made
 void stereo_table_print(const stereo_table *t, FILE *stream)
 {
     fprintf(stream, "%s, mean angular error in degrees over %zu objects; %d pictures drawn %d times\n\n", t->model,
-            t->count, SUBSET_PICTURES, t->draws);
+            t->count, t->pictures, t->draws);
     stereo_table_print_heading(t, stream);
     stereo_table_print_row(t, STEREO_SINGLE, "single image", stream);
     print_judge(t, "calibrated", STEREO_RELIT, STEREO_REAL, stream);
@@ -145,7 +145,7 @@ void stereo_table_put(const stereo_table *t, cJSON *o)
 {
     json_put_text(o, "model", t->model);
     json_put_number(o, "draws", t->draws);
-    json_put_number(o, "pictures_a_draw", SUBSET_PICTURES);
+    json_put_number(o, "pictures_a_draw", t->pictures);
     cJSON *mean = json_put_object(o, "mean");
     for (int row = 0; row < STEREO_ROWS; row++)
         add_number(mean, keys[row], stereo_table_mean(t, (stereo_row)row));

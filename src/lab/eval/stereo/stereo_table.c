@@ -18,6 +18,7 @@
 #include "photo_stereo/relit.h"
 #include "photo_stereo/subsets.h"
 #include "stereo/integrate/surface_error.h"
+#include "stereo/methods/solve.h"
 
 typedef struct evaluation {
     const stereo_options *options;
@@ -63,6 +64,16 @@ static status estimate(evaluation *e, subject *s)
     return OK;
 }
 
+static int count_draws(const stereo_options *o)
+{
+    return o->draws ? o->draws : SUBSETS;
+}
+
+static int count_pictures(const stereo_options *o)
+{
+    return o->pictures ? o->pictures : SUBSET_PICTURES;
+}
+
 /* Computes normals of a subset by a network that sees its pictures together, and photometric stereo. */
 static status see_subset(const evaluation *e, const merlin_capture *from, int subset, img *normal)
 {
@@ -70,7 +81,7 @@ static status see_subset(const evaluation *e, const merlin_capture *from, int su
     merlin_maps maps = {0};
     merlin_params params = merlin_params_default();
     params.stop = e->options->stopped;
-    status result = subset_new(from, subset, &some);
+    status result = subset_new(from, subset, count_pictures(e->options), &some);
     if (result != OK) return result;
     pst_capture_forget_lights(&some);
     result = merlin_maps_from_capture(e->judge, &some, &params, &maps);
@@ -100,12 +111,27 @@ static status solve_by_nfps(const evaluation *e, const merlin_capture *from, int
     merlin_capture some;
     img depth = {0};
     const watch asked = {.stop = e->options->stopped};
-    status result = subset_new(from, subset, &some);
+    status result = subset_new(from, subset, count_pictures(e->options), &some);
     if (result != OK) return result;
     if (told) result = tell_lights(e, &some);
     if (result == OK)
         result = nfps_stereo(e->nfps, &some, &(nfps_options){.estimated = told, .watch = &asked}, normal, &depth);
     img_free(&depth);
+    subset_free(&some);
+    return result;
+}
+
+/* Solves a subset as merlin stereo does. */
+static status solve_surface(const evaluation *e, const merlin_capture *from, int subset, merlin_stereo_method method,
+                            merlin_surface *out)
+{
+    merlin_capture some;
+    const pst_guide guide = e->nfps ? nfps_guide(e->nfps) : (pst_guide){0};
+    status result = subset_new(from, subset, count_pictures(e->options), &some);
+    if (result != OK) return result;
+    if (method == MERLIN_STEREO_UNCALIBRATED) pst_capture_forget_lights(&some);
+    const merlin_stereo_params params = {.method = method, .stop = e->options->stopped};
+    result = pst_solve_guided(&some, &params, e->nfps ? &guide : NULL, out);
     subset_free(&some);
     return result;
 }
@@ -116,7 +142,7 @@ static status solve_normals(const evaluation *e, stereo_row row, const merlin_ca
     if (stereo_row_is_nfps(row)) return solve_by_nfps(e, from, subset, stereo_row_is_compared(row), normal);
     merlin_stereo_method method = row >= STEREO_RELIT_UNCALIBRATED ? MERLIN_STEREO_UNCALIBRATED : MERLIN_STEREO_AUTO;
     merlin_surface found;
-    status result = subset_solve(from, subset, method, &found);
+    status result = solve_surface(e, from, subset, method, &found);
     if (result != OK) return result;
     *normal = found.normal;
     found.normal = (img){0};
@@ -137,17 +163,13 @@ static status solve_subset(const evaluation *e, subject *s, stereo_row row, cons
     return OK;
 }
 
-static int count_draws(const stereo_options *o)
-{
-    return o->draws ? o->draws : SUBSETS;
-}
-
 /* A subset that a solver can make nothing of is a result too. */
 static status solve_subsets(evaluation *e, subject *s, stereo_row row, const merlin_capture *from)
 {
     stereo_score *score = &s->column->row[row];
     double sum = 0, squares = 0, angle = 0, count = 0;
-    const int draws = subset_count(from) < count_draws(e->options) ? subset_count(from) : count_draws(e->options);
+    const int most = subset_count(from, count_pictures(e->options)), asked = count_draws(e->options);
+    const int draws = most < asked ? most : asked;
     for (int d = 0; d < draws; d++) {
         if (e->options->stopped && e->options->stopped()) return fail(MERLIN_STOPPED, "stopped");
         status result = solve_subset(e, s, row, from, d, &angle);
@@ -233,7 +255,7 @@ static status run_listed(const stereo_options *options, char **path, stereo_tabl
 
 status stereo_table_run(const stereo_options *options, stereo_table *out)
 {
-    *out = (stereo_table){.draws = count_draws(options)};
+    *out = (stereo_table){.draws = count_draws(options), .pictures = count_pictures(options)};
     double began = clock_seconds();
     char **path;
     size_t count;

@@ -40,7 +40,7 @@ typedef struct stereo_table {
     char model[64];
     stereo_column *object;
     size_t count;
-    int draws; /* of the pictures for each row */
+    int draws, pictures; /* for each row, and of a draw */
     double seconds;
 } stereo_table;
 
@@ -48,10 +48,11 @@ typedef struct stereo_options {
     const char *data, *weights, *flash; /* flash: weights for what is seen as a flash alone, or NULL */
     const char *judge, *several; /* weights of the universal rows: merlin_model_open's and _add_several's (may be NULL);
                                   * judge NULL: without these rows */
-    const char *nfps;            /* weights of the rows of nfps; NULL: without these rows */
+    const char *nfps;            /* weights of the rows of nfps, and with which near begins; NULL: without */
     bool relit_only;             /* without the rows of real pictures, which are the same for all weights */
     size_t count;                /* the first so many objects; 0: all */
     int draws;                   /* the first so many of the SUBSETS draws; 0: all */
+    int pictures;                /* of a draw; 0: SUBSET_PICTURES */
     const char *figure;          /* PNG of normals and where they are off, a line an object; NULL: none */
     bool quiet;
     int (*stopped)(void); /* asked between solutions; NULL: never */

@@ -180,7 +180,7 @@ static float mean_log_depth(const window *w)
 /* Replaces depth by one as integrated normals have it: of the same mean, with less or more relief, tilted and bent. */
 static void spoil_depth(const window *w, rng *r)
 {
-    const float mean = mean_log_depth(w), relief = rng_range(r, 0.5f, 1.25f), u = rng_uniform(r);
+    const float mean = mean_log_depth(w), u = rng_uniform(r), relief = 1 + u * rng_range(r, -0.5f, 0.25f);
     const float right = DEPTH_SLOPE * u * rng_normal(r), down = DEPTH_SLOPE * u * rng_normal(r);
     const noise n = noise_draw(r, WIDE_CELLS, DEPTH_ERROR * u);
     for (size_t i = 0; i < w->pixels; i++) {
