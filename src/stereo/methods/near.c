@@ -390,11 +390,12 @@ static status cost_of(const smaller_problem *small, status (*find)(near_job *job
     return s;
 }
 
-/* Tells whether to begin with what is expected. */
+/* Tells whether to begin with what is expected, by who knows the lights, too. */
 static status prefer_expected(const smaller_problem *small, bool *expected)
 {
+    const pst_expected *e = small->problem.expected;
     double with, without;
-    *expected = small->problem.expected && small->problem.expected->depth;
+    *expected = e && e->depth && !e->light;
     if (!*expected || small->problem.capture->count < ENOUGH) return OK;
     status s = cost_of(small, find_from_expected, &with);
     if (s == OK) s = cost_of(small, find_depth, &without);
