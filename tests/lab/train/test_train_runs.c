@@ -64,7 +64,7 @@ static const struct run {
     {"merlin-lights/01-96", 0x9b37bc59f24fbc72},
     {"merlin-lights/02-96", 0x3e76aa8b4d21b5ed},
     {"merlin-lights/03-96", 0x7202ec769df06ded},
-    {"merlin-nfps/03-64", 0x9c356958de6985b4},
+    {"merlin-nfps/03-64", 0xe0bee88420cd9c30},
     {"merlin-nfps/02-64", 0xfe7f5caa2d4bdd4f},
     {"merlin-nfps/01-64", 0x1ac1ae3ab8f51692},
     {"table1/9", 0x4660fbca9884cbde},
