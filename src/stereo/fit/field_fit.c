@@ -183,8 +183,9 @@ static float albedo_of(const pst_observations *o, vec3 n)
         const float cosine = n.x * o->x[k] + n.y * o->y[k] + n.z * o->z[k];
         if (o->usable[k] > 0 && cosine > GRAZING) albedo[count++] = o->value[k] / cosine;
     }
+    if (count == 0) return 0;
     qsort(albedo, count, sizeof *albedo, number_ascending);
-    return count > 0 ? albedo[count / 2] : 0;
+    return albedo[count / 2];
 }
 
 /* Fits the lobe; power NULL: distant lights. */
