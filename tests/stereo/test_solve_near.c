@@ -9,6 +9,7 @@
 #include <cmocka.h> /* last, as cmocka defines a macro named fail */
 
 #include "ball.h"
+#include "stereo/doubts/model_check.h"
 #include "stereo/fit/field_fit.h"
 
 enum { SIZE = BALL_SIZE, LIGHTS = 32 };
@@ -247,6 +248,9 @@ static void a_surface_that_is_told_gets_its_albedo(void **state)
         count += (double)c.mask.data[i];
     }
     assert_true(fabs(sum / count / (0.36 / M_PI) - 1) < 0.15);
+    warnings doubts = {0};
+    assert_int_equal(pst_check_model(&c, &s, &doubts), OK);
+    assert_null(warnings_find(&doubts, "lights_do_not_fit"));
     merlin_surface_free(&s);
     capture_drop(&c);
 }

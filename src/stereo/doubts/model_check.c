@@ -203,7 +203,8 @@ static status check_all(check *c, const merlin_capture *of, warnings *out)
 
 status pst_check_model(const merlin_capture *c, const merlin_surface *s, warnings *out)
 {
-    check all = {.method = s->method};
+    /* other lights and lenses are tried by the solver of the same lights, without a network */
+    check all = {.method = s->method == MERLIN_STEREO_NFPS ? MERLIN_STEREO_NEAR : s->method};
     if (c->lighting == MERLIN_UNKNOWN_LIGHTS || c->count < FEWEST) return OK;
     int picture[PICTURES];
     status result = pst_shrink_to(c, SMALL, PICTURES, picture, &all.small);

@@ -35,9 +35,9 @@
  * steps in depth at the end. */
 enum { ITERATIONS = 12, SAMPLE = 192, SMALL = 1500, ANEW = 3, ADMISSIONS = 2, STEPPED = 2, SWEEPS = 2 };
 
-/* ROUNDS: from what is expected; of more than LARGE pixels one, as integrating them takes most of the time. ENOUGH:
+/* ROUNDS: from what is expected; only the last one looks for steps in depth, which takes most of the time. ENOUGH:
  * lights from which on costs tell a wrong surface; far_better: by this factor. */
-enum { ROUNDS = 3, LARGE = 100000, ENOUGH = 8 };
+enum { ROUNDS = 3, ENOUGH = 8 };
 static const double far_better = 0.7;
 
 /* Rounds end when depths change by less than this share of the distance on average. */
@@ -367,9 +367,9 @@ static status find_from_expected(near_job *job)
     status s = pst_field_albedo(&f);
     if (s == OK && !(distance > 0)) s = check_distance(job, &unsure);
     job->out->distance_unsure = unsure;
-    for (int k = 0; s == OK && k < (p->pixel_count > LARGE ? 1 : ROUNDS); k++) {
+    for (int k = 1; s == OK && k <= ROUNDS; k++) {
         s = fit_normals(job, false);
-        if (s == OK) s = place(job, placed, true);
+        if (s == OK) s = place(job, placed, k == ROUNDS);
     }
     return s;
 }
