@@ -148,6 +148,7 @@ typedef struct merlin_surface {
     merlin_image mask;   /* 1 channel, 0 or 1 */
     merlin_camera camera;
     merlin_stereo_method method; /* method that was used */
+    int by_network; /* MERLIN_STEREO_NEAR and _NFPS: a network's surface is the result, or where its search began */
     merlin_light
         *lights; /* light_count, one per picture, as MERLIN_STEREO_SEMI and _UNCALIBRATED estimate them; else NULL */
     int light_count;
@@ -155,11 +156,10 @@ typedef struct merlin_surface {
                            * camera.distance (1 if that is unknown) */
     int strengths_unsure; /* MERLIN_STEREO_SEMI: the object is too flat, or the pictures are too few (3), to determine
                            * the lights' intensities: normals may have large errors */
-    int by_network; /* MERLIN_STEREO_NEAR and _NFPS: a network's surface is the result, or where its search began */
-    int distance_unsure;      /* MERLIN_STEREO_NEAR without a known distance: the lights are too few, or too similar, to
-                               * determine it: normals may have large errors */
-    int lights_unsure;        /* MERLIN_STEREO_UNCALIBRATED: the pictures or the object's outline hardly determine them:
-                               * normals may have large errors, or be convex where the object is concave */
+    int distance_unsure;  /* MERLIN_STEREO_NEAR without a known distance: the lights are too few, or too similar, to
+                           * determine it: normals may have large errors */
+    int lights_unsure;    /* MERLIN_STEREO_UNCALIBRATED: the pictures or the object's outline hardly determine them:
+                           * normals may have large errors, or be convex where the object is concave */
     merlin_warnings warnings; /* what contradicts the pictures, their lights and the result (docs/json.md lists the
                                * codes), including these three; empty if params.unchecked */
     int keep_edges;           /* params.keep_edges */

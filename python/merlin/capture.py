@@ -127,10 +127,10 @@ class Capture:
 
         method: "auto" (by what is known of the lights), "ls", "robust", "near", "nfps" (near lights by a network),
         "semi" or "uncalibrated". keep_edges: depth may jump where the normals say so. integrate: depth that is solved
-        with the normals is integrated from them once more. iterations: at most, of "near" and "semi"; 0: the method's own. check_result: hold the result
-        against other lights, lenses and tones, for warnings. weights: of the network of
-        near lights, with which "nfps" solves and "near" begins; None: those that ship. Progress and stop: as of
-        Model.estimate."""
+        with the normals is integrated from them once more. iterations: at most, of "near" and "semi"; 0: the method's
+        own. check_result: hold the result against other lights, lenses and tones, for warnings. weights: of the
+        network of near lights, with which "nfps" solves and "near" begins; None: those that ship. Progress and stop:
+        as of Model.estimate."""
         params = h.StereoParams(choice(method, METHODS, "method"), int(keep_edges), int(integrate),
                                 whole(iterations, "iterations"), int(not check_result))
         watch = Watch(progress, stop)

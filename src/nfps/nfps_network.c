@@ -6,7 +6,7 @@
 
 #include "model/model.h"
 
-struct nfps_network {
+struct merlin_near_network {
     model_config config;
     nn_params *params;
     nn_graph *stage[2]; /* of the first scale, and of all others */

@@ -11,9 +11,10 @@
 #define MERLIN_NFPS_NFPS_NETWORK_H
 
 #include "base/status.h"
+#include "merlin/stereo.h"
 #include "nfps/nfps_inputs.h"
 
-typedef struct nfps_network nfps_network;
+typedef struct merlin_near_network nfps_network;
 
 /* Opens a weights file; MERLIN_BAD_INPUT if it is another model's. */
 status nfps_network_open(const char *weights, nfps_network **out);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the network of near lights looks at: a surface as far as it is known, and its lights. */
+/* The scene of the network of near lights: a surface as far as it is known, and its lights. */
 #ifndef MERLIN_NFPS_NFPS_SCENE_H
 #define MERLIN_NFPS_NFPS_SCENE_H
 

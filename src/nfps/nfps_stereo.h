@@ -25,7 +25,7 @@ typedef struct nfps_options {
 status nfps_stereo(const nfps_network *n, const merlin_capture *c, const nfps_options *options, img *normal,
                    img *depth);
 
-/* Returns the guide who tells what this network finds, for pst_stereo_guided; n is borrowed. */
+/* Returns the guide who tells what this network finds, for pst_stereo_guided; n is borrowed, NULL: nobody. */
 pst_guide nfps_guide(const nfps_network *n);
 
 #endif

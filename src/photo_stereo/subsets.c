@@ -59,14 +59,20 @@ void subset_free(merlin_capture *subset)
     *subset = (merlin_capture){0};
 }
 
-status subset_solve(const merlin_capture *all, int subset, merlin_stereo_method method, merlin_surface *out)
+status subset_solve_guided(const merlin_capture *all, int subset, int pictures, const merlin_stereo_params *params,
+                           const pst_guide *guide, merlin_surface *out)
 {
     merlin_capture some;
     *out = (merlin_surface){0};
-    status s = subset_new(all, subset, SUBSET_PICTURES, &some);
+    status s = subset_new(all, subset, pictures, &some);
     if (s != OK) return s;
-    if (method == MERLIN_STEREO_UNCALIBRATED) pst_capture_forget_lights(&some);
-    s = pst_solve(&some, &(merlin_stereo_params){.method = method}, out);
+    if (params->method == MERLIN_STEREO_UNCALIBRATED) pst_capture_forget_lights(&some);
+    s = pst_solve_guided(&some, params, guide, out);
     subset_free(&some);
     return s;
+}
+
+status subset_solve(const merlin_capture *all, int subset, merlin_stereo_method method, merlin_surface *out)
+{
+    return subset_solve_guided(all, subset, SUBSET_PICTURES, &(merlin_stereo_params){.method = method}, NULL, out);
 }

@@ -20,7 +20,10 @@ int subset_count(const merlin_capture *all, int pictures);
  * MERLIN_NO_MEMORY. */
 status subset_new(const merlin_capture *all, int subset, int pictures, merlin_capture *out);
 void subset_free(merlin_capture *subset);
-/* Solves subset number `subset` of SUBSET_PICTURES. MERLIN_STEREO_UNCALIBRATED does not get the lights. */
+/* Solves a subset as pst_solve_guided does. MERLIN_STEREO_UNCALIBRATED does not get the lights. */
+status subset_solve_guided(const merlin_capture *all, int subset, int pictures, const merlin_stereo_params *params,
+                           const pst_guide *guide, merlin_surface *out);
+/* Solves subset number `subset` of SUBSET_PICTURES. */
 status subset_solve(const merlin_capture *all, int subset, merlin_stereo_method method, merlin_surface *out);
 
 #endif

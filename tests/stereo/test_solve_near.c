@@ -209,7 +209,7 @@ static void a_near_capture_without_focal_length_is_refused(void **state)
     capture_drop(&c);
 }
 
-/* What a guide tells, and the distance that it was told. */
+/* A surface that a guide tells, and the distance that the guide was told. */
 typedef struct told {
     const img *normal, *depth;
     float mean, distance; /* of the depth, and the camera's */

@@ -386,8 +386,10 @@ status pst_field_predict(const pst_field *f, double *cost)
     return s;
 }
 
-status pst_field_albedo(const pst_field *f)
+status pst_field_given(const pst_field *f, const img *normal)
 {
+    for (size_t i = 0; i < f->count; i++)
+        f->shading[i].normal = pst_facing(vec3_of(normal->data + 3 * (size_t)f->pixel[i]));
     return run(&(fit_job){.field = f, .task = ALBEDO});
 }
 

@@ -37,8 +37,8 @@ status pst_field_spread(const pst_field *f, int sweeps);
  * many times over all pixels. */
 status pst_field_replace_outliers(const pst_field *f, int sweeps);
 
-/* Sets the albedo of the field's normals, of a surface without gloss. */
-status pst_field_albedo(const pst_field *f);
+/* Sets the shading to these normals (3 channels, of the pictures' size), with the albedo of a surface without gloss. */
+status pst_field_given(const pst_field *f, const img *normal);
 
 /* Computes each observation's weight in the fit, and its value by the fit (both count × pst_padded(pictures)). */
 status pst_field_model(const pst_field *f, float *weight, float *model);

@@ -4,7 +4,6 @@
  * the pictures are from that. */
 #include <stdlib.h>
 
-#include "stereo/algebra/matrix3.h"
 #include "stereo/fit/field_fit.h"
 #include "stereo/methods/solve_parts.h"
 
@@ -13,8 +12,6 @@ status pst_solve_given(const pst_problem *p, merlin_surface *out)
     static const pst_lobe matte = {.width = 0.1f, .shadow = PST_SHADOW_COST};
     pst_shading *shading = calloc(p->pixel_count, sizeof *shading);
     if (!shading) return fail(MERLIN_NO_MEMORY, "no memory to fit %zu pixels", p->pixel_count);
-    for (size_t i = 0; i < p->pixel_count; i++)
-        shading[i].normal = pst_facing(vec3_of(p->expected->normal->data + 3 * (size_t)p->pixel[i]));
     out->by_network = 1;
     status s = img_copy(&out->depth, p->expected->depth);
     const pst_field f = {.problem = p,
@@ -24,7 +21,7 @@ status pst_solve_given(const pst_problem *p, merlin_surface *out)
                          .scale = 1,
                          .lobe = &matte,
                          .shading = shading};
-    if (s == OK) s = pst_field_albedo(&f);
+    if (s == OK) s = pst_field_given(&f, p->expected->normal);
     if (s == OK) s = pst_field_store(&f, out);
     free(shading);
     return s;

@@ -139,13 +139,18 @@ static void rescale(near_job *job, float scale)
     job->camera.distance *= scale;
 }
 
-static void keep_distance(near_job *job)
+static double sum_depth(const near_job *job)
 {
     const pst_problem *p = job->problem;
     double sum = 0;
     for (size_t i = 0; i < p->pixel_count; i++)
         sum += (double)job->out->depth.data[p->pixel[i]];
-    rescale(job, job->held_at * (float)p->pixel_count / (float)sum);
+    return sum;
+}
+
+static void keep_distance(near_job *job)
+{
+    rescale(job, job->held_at * (float)job->problem->pixel_count / (float)sum_depth(job));
     job->camera.distance = job->held_at;
 }
 
@@ -343,15 +348,6 @@ static status fill_in(near_job *job)
 
 /* ---- from what is expected ---- */
 
-static float mean_depth(const near_job *job)
-{
-    const pst_problem *p = job->problem;
-    double sum = 0;
-    for (size_t i = 0; i < p->pixel_count; i++)
-        sum += (double)job->out->depth.data[p->pixel[i]];
-    return (float)(sum / (double)p->pixel_count);
-}
-
 /* Finds depth and normals from the expected ones. */
 static status find_from_expected(near_job *job)
 {
@@ -361,10 +357,8 @@ static status find_from_expected(near_job *job)
     bool unsure = false;
     fill_first(job);
     job->held_at = distance;
-    job->camera.distance = distance > 0 ? distance : mean_depth(job);
-    for (size_t i = 0; i < p->pixel_count; i++)
-        job->shading[i].normal = pst_facing(vec3_of(p->expected->normal->data + 3 * (size_t)p->pixel[i]));
-    status s = pst_field_albedo(&f);
+    job->camera.distance = distance > 0 ? distance : (float)(sum_depth(job) / (double)p->pixel_count);
+    status s = pst_field_given(&f, p->expected->normal);
     if (s == OK && !(distance > 0)) s = check_distance(job, &unsure);
     job->out->distance_unsure = unsure;
     for (int k = 1; s == OK && k <= ROUNDS; k++) {

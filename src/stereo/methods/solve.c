@@ -198,7 +198,7 @@ static size_t expected_effort(const pst_problem *p, merlin_stereo_method method)
     return (known ? passes[method] : 1) * p->pixel_count + (method == MERLIN_STEREO_NEAR ? SMALL_ONES : 0) + 1;
 }
 
-/* Who expects something: a surface and lights, or a guide who is asked for the surface. */
+/* Expectations from elsewhere: a surface and lights, or a guide who is asked for the surface. */
 typedef struct expecting {
     const pst_expected *expected;
     const pst_guide *guide;
@@ -296,5 +296,5 @@ status pst_solve_expecting(const merlin_capture *c, const merlin_stereo_params *
 status pst_solve_guided(const merlin_capture *c, const merlin_stereo_params *params, const pst_guide *guide,
                         merlin_surface *out)
 {
-    return solve(c, params, (expecting){.guide = guide}, out);
+    return solve(c, params, (expecting){.guide = guide && guide->find ? guide : NULL}, out);
 }

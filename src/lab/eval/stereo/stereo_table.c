@@ -18,7 +18,6 @@
 #include "photo_stereo/relit.h"
 #include "photo_stereo/subsets.h"
 #include "stereo/integrate/surface_error.h"
-#include "stereo/methods/solve.h"
 
 typedef struct evaluation {
     const stereo_options *options;
@@ -121,28 +120,15 @@ static status solve_by_nfps(const evaluation *e, const merlin_capture *from, int
     return result;
 }
 
-/* Solves a subset as merlin stereo does. */
-static status solve_surface(const evaluation *e, const merlin_capture *from, int subset, merlin_stereo_method method,
-                            merlin_surface *out)
-{
-    merlin_capture some;
-    const pst_guide guide = e->nfps ? nfps_guide(e->nfps) : (pst_guide){0};
-    status result = subset_new(from, subset, count_pictures(e->options), &some);
-    if (result != OK) return result;
-    if (method == MERLIN_STEREO_UNCALIBRATED) pst_capture_forget_lights(&some);
-    const merlin_stereo_params params = {.method = method, .stop = e->options->stopped};
-    result = pst_solve_guided(&some, &params, e->nfps ? &guide : NULL, out);
-    subset_free(&some);
-    return result;
-}
-
 static status solve_normals(const evaluation *e, stereo_row row, const merlin_capture *from, int subset, img *normal)
 {
     if (stereo_row_is_universal(row)) return see_subset(e, from, subset, normal);
     if (stereo_row_is_nfps(row)) return solve_by_nfps(e, from, subset, stereo_row_is_compared(row), normal);
     merlin_stereo_method method = row >= STEREO_RELIT_UNCALIBRATED ? MERLIN_STEREO_UNCALIBRATED : MERLIN_STEREO_AUTO;
+    const merlin_stereo_params params = {.method = method, .stop = e->options->stopped};
+    const pst_guide guide = nfps_guide(e->nfps);
     merlin_surface found;
-    status result = solve_surface(e, from, subset, method, &found);
+    status result = subset_solve_guided(from, subset, count_pictures(e->options), &params, &guide, &found);
     if (result != OK) return result;
     *normal = found.normal;
     found.normal = (img){0};
