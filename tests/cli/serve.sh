@@ -128,6 +128,8 @@ done
 fetches "$together" viewer.html got
 two=$(submit stereo "${pictures[@]:0:4}" -F size=64 -F views=1)
 told "$two" | grep -q '"state":"done".*"photographs":2' || complain "two pictures without lights: $(told "$two" | head -c 900)"
+distant=$(submit stereo "${pictures[@]:0:6}" -F lights=@dome/dome.lp -F method=nfps)
+told "$distant" | grep -q '"state":"failed".*nfps needs light positions' || complain "nfps of distant lights: $(told "$distant" | head -c 500)"
 asks 400 'views is for a photo, or pictures without lights' "$site/v1/stereo" "${pictures[@]}" -F lights=@dome/dome.lp -F views=1
 asks 400 'method universal takes no lights' "$site/v1/stereo" "${pictures[@]}" -F lights=@dome/dome.lp -F method=universal
 asks 400 'is for pictures, not for a photo' "$site/v1/stereo" -F photo=@"$demo" -F method=universal

@@ -46,8 +46,8 @@ static status check_pictures(const form *f, const work_limits *limits, bool univ
 
 static status read_values(const form *f, stereo_request *r)
 {
-    enum { UNIVERSAL = MERLIN_STEREO_UNCALIBRATED + 1 };
-    static const char *const methods[] = {"auto", "ls", "robust", "near", "semi", "uncalibrated", "universal"};
+    enum { UNIVERSAL = MERLIN_STEREO_NFPS + 1 };
+    static const char *const methods[] = {"auto", "ls", "robust", "near", "semi", "uncalibrated", "nfps", "universal"};
     int method = MERLIN_STEREO_AUTO;
     status s = form_choice(f, "method", methods, sizeof methods / sizeof *methods, &method);
     r->universal = method == UNIVERSAL;
@@ -202,6 +202,8 @@ static status solve_pictures(const work_context *w, const stereo_request *r, con
                              merlin_surface *out)
 {
     merlin_capture *capture = NULL;
+    if (params->method == MERLIN_STEREO_NFPS && !w->near)
+        return fail(MERLIN_WRONG_USE, "method nfps: this server has no weights merlin-nfps; near solves without them");
     status s = read_capture(w, r, &capture);
     if (s == OK) s = merlin_stereo_by_network(w->near, capture, params, out);
     merlin_capture_free(capture);
