@@ -25,6 +25,14 @@ class Unreadable(Exception):
     """Says in one line what is wrong with which file."""
 
 
+class Odd(ValueError):
+    """Says what is wrong, without the file's name."""
+
+
+# What reading raises where bytes are missing or mean nothing.
+DAMAGE = (ValueError, IndexError, KeyError, TypeError, struct.error, zlib.error)
+
+
 def _text(data: bytes, at: int) -> tuple[str, int]:
     end = data.index(b"\0", at)
     return data[at:end].decode("utf-8", "replace"), end + 1
@@ -52,7 +60,7 @@ def _channels(data: bytes) -> list[tuple[str, np.dtype]]:
         name, at = _text(data, at)
         kind, _, across, down = struct.unpack_from("<iIii", data, at)
         if kind not in SAMPLE_TYPES or across != 1 or down != 1:
-            raise ValueError(f"its channel {name} is of a kind that merlin does not write")
+            raise Odd(f"its channel {name} is of a kind that merlin does not write")
         found.append((name, SAMPLE_TYPES[kind]))
         at += 16
     return found
@@ -64,7 +72,7 @@ def _unzip(packed: bytes, size: int) -> np.ndarray:
         return np.frombuffer(packed, np.uint8)
     changes = np.frombuffer(zlib.decompressobj().decompress(packed, size + 1), np.uint8).copy()
     if len(changes) != size:
-        raise ValueError("a part of it has the wrong length")
+        raise Odd("a part of it has the wrong length")
     changes[1:] -= 128
     halves = np.add.accumulate(changes, dtype=np.uint8)
     whole = np.empty(size, np.uint8)
@@ -84,13 +92,14 @@ class Exr:
             self._read_head()
         except OSError as error:
             raise Unreadable(f"{path}: {error.strerror}") from error
-        except (ValueError, IndexError, KeyError, TypeError, struct.error) as error:
-            raise Unreadable(f"{path} cannot be read as one of merlin's EXR files: {error}") from error
+        except DAMAGE as error:
+            why = error if isinstance(error, Odd) else "it is cut short, or none at all"
+            raise Unreadable(f"{path} cannot be read as one of merlin's EXR files: {why}") from error
 
     def _read_head(self) -> None:
         magic, version = struct.unpack_from("<iI", self._data)
         if magic != MAGIC or version & (TILED | DEEP | SEVERAL_PARTS):
-            raise ValueError("it is no EXR file of scan lines and one part")
+            raise Odd("it is no EXR file of scan lines and one part")
         self.attributes: dict[str, Any] = {}
         at = 8
         while self._data[at]:
@@ -104,11 +113,11 @@ class Exr:
         self._top = top
         self.width, self.height = right - left + 1, bottom - top + 1
         if self.attributes["dataWindow"] != self.attributes["displayWindow"]:
-            raise ValueError("another program has cut it to a part of the picture")
+            raise Odd("another program has cut it to a part of the picture")
         if self.width < 1 or self.height < 1 or self.width * self.height > MOST_PIXELS:
-            raise ValueError("its size is out of range")
+            raise Odd("its size is out of range")
         if self.attributes["compression"] not in LINES_PER_CHUNK:
-            raise ValueError("another program has saved it with a compression that merlin does not write")
+            raise Odd("another program has saved it with a compression that merlin does not write")
         self.channels = _channels(self.attributes["channels"])
 
     def read(self, names: list[str]) -> dict[str, np.ndarray]:
@@ -120,8 +129,9 @@ class Exr:
         planes = {name: np.empty((self.height, self.width), kinds[name]) for name in names}
         try:
             self._read_chunks(planes)
-        except (ValueError, IndexError, struct.error, zlib.error) as error:
-            raise Unreadable(f"{self.path} is damaged or cut short: {error}") from error
+        except DAMAGE as error:
+            why = f": {error}" if isinstance(error, Odd) else ""
+            raise Unreadable(f"{self.path} is damaged or cut short{why}") from error
         return planes
 
     def _read_chunks(self, planes: dict[str, np.ndarray]) -> None:
@@ -130,11 +140,11 @@ class Exr:
         line_bytes = self.width * sum(kind.itemsize for _, kind in self.channels)
         for offset in struct.unpack_from(f"<{count}Q", self._data, self._table):
             if offset > len(self._data):
-                raise ValueError("it ends before a part of it begins")
+                raise Odd("it ends before a part of it begins")
             row, size = struct.unpack_from("<ii", self._data, offset)
             row -= self._top
             if not 0 <= row < self.height:
-                raise ValueError("a part of it lies outside the picture")
+                raise Odd("a part of it lies outside the picture")
             here = min(lines, self.height - row)
             chunk = _unzip(self._data[offset + 8 : offset + 8 + size], here * line_bytes).reshape(here, line_bytes)
             at = 0

@@ -44,6 +44,9 @@ typedef struct merlin_export_params {
                       * (OpenGL, Unity, Blender, MaterialX) */
     int side;        /* pixels a side, within the two bounds; 0: the square's size in the photograph, at most
                       * MERLIN_EXPORT_SIDE */
+    int (*stop)(void); /* called between the files; a nonzero result ends the work with MERLIN_STOPPED; may be NULL */
+    merlin_progress progress; /* called with "exporting"; may be NULL */
+    void *progress_context;
 } merlin_export_params;
 
 /* Numbers of export.json. */

@@ -34,8 +34,8 @@ typedef struct merlin_found_light {
 } merlin_found_light;
 
 /* Describes it for a person, such as "a lamp from the upper left, 40 degrees aside, in a room", into text as snprintf
- * does; less than MERLIN_LIGHT_WORDS characters, none if nothing is known. It names sources of a seventh of the light
- * or more. */
+ * does; less than MERLIN_LIGHT_WORDS characters, none if no model of any light has looked. It names sources of a
+ * seventh of the light or more, and says if there is none. */
 enum { MERLIN_LIGHT_WORDS = 128 };
 int merlin_light_words(const merlin_found_light *light, char *text, int size);
 

@@ -177,7 +177,7 @@ EXPORT_NAMES = ("ALBEDO", "NORMAL", "ROUGHNESS", "SMOOTHNESS", "OCCLUSION", "ORM
                 "MATERIALX")
 EXPORT_ALL = (1 << len(EXPORT_NAMES)) - 1
 EXPORT_SIDE, EXPORT_LEAST_SIDE, EXPORT_MOST_SIDE = 2048, 64, 8192
-ExportParams = _struct("export_params", [("maps", c_uint), ("normal_down", c_int), ("side", c_int)])
+ExportParams = _struct("export_params", [("maps", c_uint), ("normal_down", c_int), ("side", c_int)] + _WATCH)
 ExportFacts = _struct("export_facts", [("side", c_int), ("relief", c_float), ("width", c_float)])
 
 # ---- rti.h ----

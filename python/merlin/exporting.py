@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Iterable, List, NamedTuple, Optional
 import numpy as np
 
 from . import _headers as h
-from ._call import Owner, check, choice, path_bytes, view, whole, written_paths
+from ._call import Owner, Watch, check, choice, path_bytes, view, whole, written_paths
 from .pictures import PathLike, new_image
 
 if TYPE_CHECKING:
@@ -29,14 +29,16 @@ class Exported(NamedTuple):
     width: float  #: of the square at the object's mean distance, in the maps' unit
 
 
-def export(maps: "Maps", folder: PathLike, which: Optional[Iterable[str]], normal_y: str, side: int) -> Exported:
+def export(maps: "Maps", folder: PathLike, which: Optional[Iterable[str]], normal_y: str, side: int,
+           watch: Watch) -> Exported:
     """As Maps.export."""
     bits = 0
     for name in [which] if isinstance(which, str) else which or ():
         bits |= choice(name, BITS, "a map")
     params = h.ExportParams(bits, choice(normal_y, {"up": 0, "down": 1}, "normal_y"), whole(side, "side"))
     facts, written = h.ExportFacts(), Owner(h.Files(), "files_free")
-    check("maps_export", maps._sound(), ctypes.byref(params), path_bytes(folder), ctypes.byref(facts), written.at)
+    watch.put(params)
+    watch.check("maps_export", maps._sound(), ctypes.byref(params), path_bytes(folder), ctypes.byref(facts), written.at)
     return Exported(written_paths(written), facts.side, facts.relief, facts.width)
 
 

@@ -291,14 +291,15 @@ class Maps:
                     path_bytes(folder))
 
     def export(self, folder: PathLike, maps: Optional[Iterable[str]] = None, *, normal_y: str = "up",
-               side: int = 0) -> exporting.Exported:
+               side: int = 0, progress: Optional[ProgressCallback] = None,
+               stop: Optional[StopCallback] = None) -> exporting.Exported:
         """Writes the square around the object as other programs read it, and export.json, into a folder.
 
         maps: any of "albedo", "normal", "roughness", "smoothness", "ao", "orm", "height", "height32", "alpha",
         "materialx" and "all" (with "down" all but materialx); None: albedo, normal, roughness, ao, height and alpha. normal_y: "up"
         (OpenGL, Unity, Blender) or "down" (DirectX, Unreal). side: pixels a side, 64 to 8192; 0: the square's in the
-        photograph, at most 2048."""
-        return exporting.export(self, folder, maps, normal_y, side)
+        photograph, at most 2048. progress, stop: as of Model.estimate."""
+        return exporting.export(self, folder, maps, normal_y, side, Watch(progress, stop))
 
     def occlusion(self, side: int) -> np.ndarray:
         """Ambient occlusion of the square around the object: side x side in [0, 1], 1 beside the object; the share,

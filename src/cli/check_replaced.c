@@ -74,11 +74,26 @@ static status find_capture(const char *folder, bool *holds)
     return OK;
 }
 
+static const char *const maps[] = {"mask.png",  "normal.png",         "albedo.png",   "roughness.png",  "depth.png",
+                                   "error.png", "reconstruction.png", "overview.png", "confidence.png", NULL};
+
+status check_inputs_kept(const char *folder, const char *photo, const char *mask)
+{
+    status s = OK;
+    for (int i = 0; maps[i] && s == OK; i++) {
+        char *path = file_join(folder, maps[i]);
+        if (!path) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
+        if (file_is_same(photo, path) || (mask && file_is_same(mask, path)))
+            s = fail(MERLIN_CANNOT_WRITE, "cannot write %s: it is what was read; copy it, or choose another folder",
+                     path);
+        free(path);
+    }
+    return s;
+}
+
 status check_replaced(const char *folder, bool meshes)
 {
     static const char *const own[] = {"maps.exr", "report.json", NULL};
-    static const char *const maps[] = {"mask.png",  "normal.png",         "albedo.png",   "roughness.png",  "depth.png",
-                                       "error.png", "reconstruction.png", "overview.png", "confidence.png", NULL};
     static const char *const surface[] = {"mesh.ply", "mesh.obj", "mesh.glb", NULL};
     if (!file_is_folder(folder) || first_in(folder, own)) return OK;
     const char *name = first_in(folder, maps);

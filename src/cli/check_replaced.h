@@ -12,6 +12,10 @@
  * like will be written, too. */
 status check_replaced(const char *folder, bool meshes);
 
+/* Fails with MERLIN_CANNOT_WRITE if the photograph or its mask (NULL: none) has the name of a map in the output folder,
+ * which would replace it: a mask that was painted over, say. */
+status check_inputs_kept(const char *folder, const char *photo, const char *mask);
+
 /* First words of a list of a near dome's lamps, by which relight recognizes it. */
 #define LIST_OF_PLACES "# places of the lamps of dome_000"
 /* Tells whether the folder has a lights.txt that begins with these words. */

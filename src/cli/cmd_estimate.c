@@ -15,6 +15,7 @@
 #include "cli/estimate_sequence.h"
 #include "cli/estimate_write.h"
 #include "cli/expect.h"
+#include "cli/left_files.h"
 #include "cli/page.h"
 #include "cli/stage_bar.h"
 #include "cli/written.h"
@@ -138,13 +139,25 @@ typedef struct lap_times {
     double write, total;
 } lap_times;
 
+/* Lists what one should know about the maps, and about their folder. */
+static void find_doubts(const request *r, const photo_job *job, const merlin_maps *maps, const staged_files *written,
+                        warnings *doubts)
+{
+    merlin_maps_warnings(maps, doubts);
+    if (r->html) page_doubt(maps->crop.side, 0, doubts);
+    left_files_warn(job->output, written, doubts);
+}
+
 static status print_json(const request *r, const photo_job *job, const merlin_maps *maps, const staged_files *written,
                          const lap_times *laps)
 {
+    warnings doubts;
+    find_doubts(r, job, maps, written, &doubts);
     char *text = NULL;
     status s = merlin_maps_report(maps, &text);
     if (s != OK) return s;
     cJSON *report = cJSON_Parse(text), *seconds = cJSON_GetObjectItem(report, "seconds");
+    json_line_warnings(report, &doubts);
     json_put_text(report, "input", standard_input_is(job->photo) ? "-" : job->photo);
     json_line_files(report, job->output, written);
     if (job->mask) json_put_text(report, "mask_file", job->mask);
@@ -171,7 +184,7 @@ static const char *lit_by(const request *r, const merlin_maps *maps, char words[
     *words = 0;
     if (*light)
         snprintf(words, LIT_BY, ", lit by %s", light);
-    else if (r->flash_weights)
+    else if (r->flash_weights && !maps->light.known)
         snprintf(words, LIT_BY, ", lit by a flash alone and so by %s", maps->model);
     return words;
 }
@@ -189,8 +202,7 @@ static status announce(const request *r, const photo_job *job, const merlin_maps
         printf("%s: %s/overview.png (%.2f s, %s)%s\n", standard_input_name(job->photo), job->output, laps->total,
                written_words(written, amount), lit_by(r, maps, lit));
     warnings doubts;
-    merlin_maps_warnings(maps, &doubts);
-    if (r->html) page_doubt(maps->crop.side, 0, &doubts);
+    find_doubts(r, job, maps, written, &doubts);
     if (!r->quiet) warnings_print(&doubts, "estimate", standard_input_name(job->photo), TOLD);
     return s;
 }
@@ -295,6 +307,7 @@ static int estimate_all(request *r, const photo_list *photos)
         begin_photo(r, photos, i, &done, all);
         status s = cli_interrupted() ? MERLIN_STOPPED : check_photo_and_mask(job->photo, job->mask);
         if (s == OK) s = check_replaced(job->output, false);
+        if (s == OK) s = check_inputs_kept(job->output, job->photo, job->mask);
         if (s == OK) s = check_output(job->output);
         if (s == OK) s = ready ? estimate_one(r, job) : estimate_first(r, job, &ready, &broken);
         if (s != OK) stage_bar_hide(r->bar);

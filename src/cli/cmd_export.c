@@ -11,6 +11,7 @@
 #include "cli/commands.h"
 #include "cli/maps_folder.h"
 #include "cli/written.h"
+#include "command/check_files.h"
 #include "command/cli.h"
 #include "command/json_line.h"
 #include "command/options.h"
@@ -150,9 +151,11 @@ static status run(const request *r)
     char *output = photo_output_inside(r->input, "export", r->output);
     if (!output) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
     status s = maps_folder_check(r->input, "makes one");
+    if (s == OK) s = check_output(output);
     if (s == OK) s = merlin_maps_read(r->input, &maps);
     if (s == OK) s = merlin_maps_export(&maps, &r->params, output, &facts, &written);
     if (s == OK) s = announce(r, output, &facts, &written, clock_seconds() - began);
+    if (s == MERLIN_STOPPED) s = fail(s, "interrupted; nothing was written to %s", output);
     merlin_files_free(&written);
     merlin_maps_free(&maps);
     free(output);
@@ -161,7 +164,7 @@ static status run(const request *r)
 
 int cmd_export(int argc, char **argv)
 {
-    request r = {0};
+    request r = {.params.stop = cli_interrupted};
     status s = parse(&argc, &argv, &r);
     if (s != OK) return cli_refuse("export", s);
     if (r.help) return fputs(help, stdout) < 0;

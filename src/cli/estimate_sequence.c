@@ -14,6 +14,7 @@
 #include "base/warnings.h"
 #include "cli/check_replaced.h"
 #include "cli/expect.h"
+#include "cli/left_files.h"
 #include "cli/page.h"
 #include "cli/written.h"
 #include "command/check_files.h"
@@ -176,14 +177,23 @@ static status do_frames(sequence_work *w)
 
 /* ---- what is said ---- */
 
+static void find_doubts(const sequence_work *w, warnings *doubts)
+{
+    merlin_sequence_warnings(w->sequence, merlin_frames_about(w->frames), doubts);
+    left_frames_warn(w->output, &w->written, doubts);
+}
+
 static status print_json(const sequence_work *w)
 {
+    warnings doubts;
     char *text = NULL;
+    find_doubts(w, &doubts);
     status s = merlin_sequence_report(w->sequence, merlin_frames_about(w->frames), &text);
     if (s != OK) return s;
     cJSON *report = cJSON_Parse(text);
     free(text);
     if (!report) return fail(MERLIN_NO_MEMORY, "no memory for the report");
+    json_line_warnings(report, &doubts);
     json_put_text(report, "input", w->input);
     json_line_files(report, w->output, &w->written);
     json_put_number(report, "seconds_total", clock_seconds() - w->began);
@@ -213,7 +223,7 @@ static status announce(const sequence_work *w)
     stage_bar_hide(r->bar);
     status s = r->json ? print_json(w) : OK;
     if (!r->json && !r->quiet) print_words(w);
-    merlin_sequence_warnings(w->sequence, merlin_frames_about(w->frames), &doubts);
+    find_doubts(w, &doubts);
     if (!r->quiet) warnings_print(&doubts, "estimate", w->input, TOLD);
     return s;
 }

@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "command/photos.h"
+#include "merlin/sequences.h"
 
 status maps_folder_take(int argc, char *const *argv, const char **input)
 {
@@ -15,6 +16,10 @@ status maps_folder_take(int argc, char *const *argv, const char **input)
 status maps_folder_check(const char *input, const char *remedy)
 {
     if (!file_exists(input)) return fail(MERLIN_BAD_INPUT, "there is no folder %s", input);
+    if (merlin_sequence_is(input))
+        return fail(MERLIN_BAD_INPUT,
+                    "%s holds a sequence, whose maps are in a folder of each frame: name one, %s/frame_...", input,
+                    input);
     if (file_is_folder(input)) return OK;
     return fail(MERLIN_BAD_INPUT, "%s is no folder of maps: merlin estimate %s %s", input, input, remedy);
 }

@@ -35,9 +35,8 @@ double page_cost(double pixels)
 
 void page_doubt(int square, int side, warnings *doubts)
 {
-    const int most = side ? side : MERLIN_VIEW_SIDE;
-    if (square > most)
+    if (!side && square > MERLIN_VIEW_SIDE)
         warnings_add(doubts, "page_reduced",
-                     "the page has %d of the object's %d pixels a side: view --size takes up to %d", most, square,
-                     MERLIN_VIEW_MOST_SIDE);
+                     "the page has %d of the object's %d pixels a side: view --size takes up to %d", MERLIN_VIEW_SIDE,
+                     square, MERLIN_VIEW_MOST_SIDE);
 }

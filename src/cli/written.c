@@ -2,6 +2,16 @@
 #include "cli/written.h"
 
 #include <stdio.h>
+#include <string.h>
+
+#include "base/file.h"
+
+bool written_has(const staged_files *written, const char *name)
+{
+    for (size_t i = 0; i < written->count; i++)
+        if (strcmp(file_name_of(written->at[i]), file_name_of(name)) == 0) return true;
+    return false;
+}
 
 const char *written_words(const staged_files *written, char words[WRITTEN_WORDS])
 {

@@ -1,9 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* How much a command has written, in words. */
+/* What a command has written. */
 #ifndef MERLIN_CLI_WRITTEN_H
 #define MERLIN_CLI_WRITTEN_H
 
+#include <stdbool.h>
+
 #include "base/staging.h"
+
+/* Tells whether a file of the same name, whatever its folder, was written. */
+bool written_has(const staged_files *written, const char *name);
 
 enum { WRITTEN_WORDS = 64 };
 

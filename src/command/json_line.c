@@ -15,6 +15,12 @@ void json_line_files(cJSON *object, const char *folder, const staged_files *writ
     json_put_number(object, "bytes", (double)written->bytes);
 }
 
+void json_line_warnings(cJSON *report, const warnings *doubts)
+{
+    cJSON *list = warnings_json(doubts);
+    if (!cJSON_ReplaceItemInObject(report, "warnings", list)) cJSON_Delete(list);
+}
+
 status json_report_print(char *text)
 {
     if (!text) return fail(MERLIN_NO_MEMORY, "no memory for the report");

@@ -13,6 +13,7 @@
 
 #include "base/staging.h"
 #include "base/status.h"
+#include "base/warnings.h"
 #include <cjson/cJSON.h>
 
 /* Prints a report's own text, which has several lines and is freed; NULL: memory ran out. */
@@ -20,6 +21,8 @@ status json_report_print(char *text);
 
 /* Adds "output", "files" and "bytes". */
 void json_line_files(cJSON *object, const char *folder, const staged_files *written);
+/* Puts these in the place of the report's warnings. */
+void json_line_warnings(cJSON *report, const warnings *doubts);
 status json_line_print(const cJSON *report);
 
 #endif

@@ -69,8 +69,10 @@ static int refuse_command(const program *p, const char *name)
 static int finish(int code)
 {
     bool written = fflush(stdout) == 0 && !ferror(stdout);
-    if (!written) fprintf(messages(), "%s: cannot write to standard output\n", messages_program());
-    if (!written && code == 0) code = 1;
+    if (!written && code == 0) {
+        fprintf(messages(), "%s: cannot write to standard output\n", messages_program());
+        code = 1;
+    }
     /* all files are closed, and the system frees what libraries would; but leak checkers need a normal exit */
     if (MERLIN_LEAVES_AT_ONCE) _exit(code);
     return code;

@@ -11,6 +11,7 @@
 #include "base/number.h"
 #include "base/staging.h"
 #include "base/text/report.h"
+#include "base/watch.h"
 #include "estimate/relight/maps_surface.h"
 #include "estimate/surface/fill.h"
 #include "export/materialx.h"
@@ -49,6 +50,7 @@ typedef struct export_job {
     float farthest; /* depth of the object's lowest point */
     staging *files;
     cJSON *list; /* names of the files */
+    watch shown;
 } export_job;
 
 static void job_free(export_job *j)
@@ -56,6 +58,13 @@ static void job_free(export_job *j)
     surface_free(&j->of);
     img_free(&j->occlusion);
     img_free(&j->height);
+}
+
+/* Tells how far the work is, and asks whether to go on. */
+static status told(const export_job *j, double share)
+{
+    watch_tell(&j->shown, "exporting", share);
+    return watch_stops(&j->shown) ? fail(MERLIN_STOPPED, "stopped") : OK;
 }
 
 /* ---- computed maps ---- */
@@ -252,7 +261,9 @@ static status compute(export_job *j, int side)
     if (s != OK) return s;
     j->facts.side = side;
     measure(j);
-    if (j->wanted & WITH_OCCLUSION) s = compute_occlusion(j->maps, side, &j->occlusion);
+    s = told(j, 0.1);
+    if (s == OK && j->wanted & WITH_OCCLUSION) s = compute_occlusion(j->maps, side, &j->occlusion);
+    if (s == OK) s = told(j, 0.3);
     if (s == OK && j->wanted & WITH_HEIGHT) s = compute_height(j);
     return s == OK ? fill_textures(j) : s;
 }
@@ -280,8 +291,11 @@ static status write_all(export_job *j, const char *folder, merlin_files *written
     status s = staging_begin(folder, NULL, &j->files);
     if (s != OK) return s;
     j->list = cJSON_CreateArray();
-    for (int map = 0; s == OK && map < MAPS; map++)
-        if (j->wanted & 1U << map) s = write_map(j, map);
+    for (int map = 0; s == OK && map < MAPS; map++) {
+        s = told(j, 0.5 + 0.5 * map / MAPS);
+        if (s == OK && j->wanted & 1U << map) s = write_map(j, map);
+    }
+    if (s == OK) s = told(j, 1);
     if (s == OK)
         s = write_facts(j);
     else
@@ -294,7 +308,10 @@ merlin_status merlin_maps_export(const merlin_maps *maps, const merlin_export_pa
 {
     static const merlin_export_params usual = {0};
     const merlin_export_params *how = params ? params : &usual;
-    export_job j = {.maps = maps, .wanted = how->maps ? how->maps : USUAL_MAPS, .normal_down = how->normal_down != 0};
+    export_job j = {.maps = maps,
+                    .wanted = how->maps ? how->maps : USUAL_MAPS,
+                    .normal_down = how->normal_down != 0,
+                    .shown = {how->progress, how->progress_context, how->stop}};
     if (written) *written = (merlin_files){0};
     status s = api_needs(__func__, maps && folder);
     if (s == OK) s = check(how);

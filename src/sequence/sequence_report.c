@@ -59,7 +59,7 @@ void merlin_sequence_warnings(const merlin_sequence *sequence, const merlin_fram
         if (!d->frames) continue;
         const char *code = merlin_doubt_code((merlin_doubt)(1u << i));
         if ((size_t)d->frames == sequence->count)
-            warnings_add(out, code, "%s", d->message);
+            warnings_add(out, code, "in all %zu frames: %s", sequence->count, d->message);
         else
             warnings_add(out, code, "in %ld of %zu frames: %s", d->frames, sequence->count, d->message);
     }

@@ -62,7 +62,18 @@ succeeds '"disc.merlin/mesh.glb"' estimate disc.hdr --size 64 --mesh --json
 [ "$(head -c 4 disc.merlin/mesh.glb)" = glTF ] || complain "mesh.glb is none"
 reads_mesh disc.merlin/mesh.glb
 
+echo "files of an earlier run that this one does not write get a word"
+succeeds '"warnings":\[.*"code":"files_left","message":"mesh.glb of an earlier run is still in disc.merlin: write it anew, or remove it"' \
+    estimate disc.hdr --size 64 --json
+mkdir disc.merlin/relit
+succeeds disc.merlin estimate disc.hdr --size 64
+grep -q 'mesh.glb, relit of an earlier run are still in disc.merlin: write them anew' "$scratch/stderr" || complain "no word: $(cat "$scratch/stderr")"
+rm -r disc.merlin/relit disc.merlin/mesh.glb
+succeeds disc.merlin estimate disc.hdr --size 64
+grep 'earlier run' "$scratch/stderr" && complain "a word of nothing"
+
 echo "masks are used, and must fit"
+refuses 1 'cannot write disc.merlin/mask.png: it is what was read; copy it' estimate disc.hdr --mask disc.merlin/mask.png --size 64 -o disc.merlin
 succeeds '"mask":"given"' estimate disc.hdr --mask disc.merlin/mask.png "${small[@]}" --json
 rm -rf out.merlin
 radiance large.hdr 80 30

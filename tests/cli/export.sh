@@ -73,5 +73,12 @@ mkdir empty
 refuses 1 'no maps.exr in empty' export_maps empty
 : >taken
 refuses 1 'taken' export_maps cup.merlin -o taken
+"$MERLIN" export cup.merlin --maps all --size 4096 -o stopped >out 2>err &
+pid=$!
+sleep 0.3
+kill -INT $pid
+wait $pid && complain "an interrupted export exits with 0"
+[ "$(<err)" = "merlin export: interrupted; nothing was written to stopped" ] || complain "after an interrupt: $(<err)"
+absent stopped
 [ ! -e none ] && [ "$(ls -A empty)" = "" ] || complain "left behind: $(ls -A none empty)"
 finish

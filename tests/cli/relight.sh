@@ -147,6 +147,11 @@ succeeds behind relight disc.merlin --light 0.5,0.2,-0.4 --light 0,0,0 --exposur
 grep -q 'disc.merlin: the object is black in 2 of 2 pictures' stderr || complain "no word: $(cat stderr)"
 succeeds '"warnings":\[\]' relight disc.merlin --dome 5 -o around-it --json
 
+echo "what would change nothing is refused"
+refuses 2 'are of lamps; surroundings are made brighter by --env-exposure' relight disc.merlin --env disc.hdr --power 3
+refuses 2 'are of lamps; the found light is made brighter by --exposure' relight disc.merlin --found-light --color 2700K
+refuses 2 'is of distant lights' relight disc.merlin --dome 9 --rti hsh --near
+
 echo "pictures of an earlier run among the new ones get a word"
 succeeds left relight disc.merlin --orbit 5 --light 0,0,0 --light 0.5,0,0 --light 0,0.5,0 -o left
 [ -s stderr ] && complain "a word of nothing: $(cat stderr)"
@@ -250,7 +255,7 @@ echo "bad input"
 lights=(--light 0,0,0 -o none)
 refuses 1 'missing' relight missing "${lights[@]}"
 mkdir empty
-refuses 1 'merlin estimate first' relight empty "${lights[@]}"
+refuses 1 'no maps.exr in empty: merlin estimate makes one' relight empty "${lights[@]}"
 mkdir cut
 head -c 1500 disc.merlin/maps.exr >cut/maps.exr
 refuses 1 'cut/maps.exr' relight cut "${lights[@]}"

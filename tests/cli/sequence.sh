@@ -52,6 +52,9 @@ grep -q 'frames are missing (2), first 3' stderr || complain "no word of the gap
 present gap/frame.merlin/frame_0005/maps.exr
 absent gap/frame.merlin/frame_0003
 succeeds '"frames_missing"' estimate gap/frame_0005.png gap/frame_0001.png gap/frame_0002.png --sequence -o gap.maps --json
+succeeds '"code":"frames_left","message":"1 frame of an earlier run is still beside these, frame_0005 first"' \
+    estimate gap/frame_0001.png gap/frame_0002.png --sequence -o gap.maps --json
+grep -q 'frame_0005 first' stderr || complain "no word of a frame of an earlier run: $(cat stderr)"
 
 echo "a cut begins anew"
 mkdir cut

@@ -128,7 +128,7 @@ done
 fetches "$together" viewer.html got
 two=$(submit stereo "${pictures[@]:0:4}" -F size=64 -F views=1)
 told "$two" | grep -q '"state":"done".*"photographs":2' || complain "two pictures without lights: $(told "$two" | head -c 900)"
-distant=$(submit stereo "${pictures[@]:0:6}" -F lights=@dome/dome.lp -F method=nfps)
+distant=$(submit stereo "${pictures[@]}" -F lights=@dome/dome.lp -F method=nfps)
 told "$distant" | grep -q '"state":"failed".*nfps needs light positions' || complain "nfps of distant lights: $(told "$distant" | head -c 500)"
 asks 400 'views is for a photo, or pictures without lights' "$site/v1/stereo" "${pictures[@]}" -F lights=@dome/dome.lp -F views=1
 asks 400 'method universal takes no lights' "$site/v1/stereo" "${pictures[@]}" -F lights=@dome/dome.lp -F method=universal
@@ -143,6 +143,8 @@ asks 400 'has the methods auto, near and uncalibrated' "$site/v1/stereo" -F phot
 asks 400 'takes no lights and no near' "$site/v1/stereo" "${pictures[@]}" -F lights=@dome/dome.lp -F method=uncalibrated
 asks 400 'stereo wants 3 pictures or more, not 2' "$site/v1/stereo" "${pictures[@]:0:4}" -F lights=@dome/dome.lp
 asks 400 'filenames.txt, sent as pictures, has no name of a picture' "$site/v1/stereo" "${pictures[@]}" -F "pictures=@dome/dome.lp;filename=filenames.txt"
+fewer=$(submit stereo "${pictures[@]:0:12}" -F lights=@dome/dome.lp)
+told "$fewer" | grep -q '"state":"failed".*but what was sent has no such pictures, or several' || complain "missing pictures: $(told "$fewer" | head -c 500)"
 cp "$demo" secret.png
 sed "s|^[^ ]*\.[a-z]* |$PWD/secret.png |" dome/dome.lp >elsewhere.lp
 elsewhere=$(submit stereo "${pictures[@]}" -F lights=@elsewhere.lp)

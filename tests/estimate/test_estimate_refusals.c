@@ -265,7 +265,7 @@ static void folders_without_maps_are_refused(void **state)
     const fixture *f = *state;
     merlin_maps maps;
     assert_int_equal(merlin_maps_read(f->folder, &maps), MERLIN_BAD_INPUT);
-    assert_non_null(strstr(merlin_error(), "merlin estimate first"));
+    assert_non_null(strstr(merlin_error(), "merlin estimate makes one"));
 }
 
 static void lights_that_are_nowhere_are_refused(void **state)

@@ -185,6 +185,9 @@ static void light_has_words(void **state)
     light.rest[0][0] = light.rest[0][1] = light.rest[0][2] = 0.6f; /* a twelfth of all */
     merlin_light_words(&light, words, sizeof words);
     assert_string_equal(words, "a flash and a little other light");
+    light = (merlin_found_light){.known = 1, .rest = {{-1, -1, -1}}};
+    merlin_light_words(&light, words, sizeof words);
+    assert_string_equal(words, "light of an unknown kind");
     merlin_light_words(&(merlin_found_light){0}, words, sizeof words);
     assert_string_equal(words, "");
 }

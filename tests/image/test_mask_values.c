@@ -191,6 +191,21 @@ static void values_that_are_neither_two_nor_half_white_are_refused(void **state)
     assert_refused(save_grey(codes, "ramp.png"), "from 0 to 94 of 255");
 }
 
+static void photographs_are_refused(void **state)
+{
+    (void)state;
+    uint8_t grey[PIXELS], colours[PIXELS][3];
+    for (int i = 0; i < PIXELS; i++) {
+        const int shade = is_object(i) ? 60 + 4 * (i % SIDE) + i / SIDE : 0;
+        grey[i] = (uint8_t)(is_object(i) && i / SIDE < TOP + 4 ? 255 : shade); /* burnt out in one part */
+        for (int c = 0; c < 3; c++)
+            colours[i][c] = (uint8_t)(is_object(i) ? shade - 10 * c : 30 + i % 7 * 9 + c);
+    }
+    assert_refused(save_grey(grey, "burnt.png"), "looks like a photograph: 68 % of what it shows");
+    assert_refused(save(colours, 3, VIPS_FORMAT_UCHAR, "photo.png"), "looks like a photograph");
+    assert_refused(save(colours, 3, VIPS_FORMAT_UCHAR, "photo.jpg"), "looks like a photograph");
+}
+
 static void floats_beyond_white_have_a_unit_of_their_own(void **state)
 {
     (void)state;
@@ -258,6 +273,7 @@ int main(void)
         cmocka_unit_test(noise_of_jpeg_about_two_values_is_no_more_values),
         cmocka_unit_test(more_areas_than_two_are_refused_by_their_values),
         cmocka_unit_test(values_that_are_neither_two_nor_half_white_are_refused),
+        cmocka_unit_test(photographs_are_refused),
         cmocka_unit_test(floats_beyond_white_have_a_unit_of_their_own),
         cmocka_unit_test(alpha_of_any_numbers_is_taken),
         cmocka_unit_test(one_value_stays_what_it_is),

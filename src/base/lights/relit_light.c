@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdio.h>
 
-/* Least linear value that is not 0 in an 8-bit file. */
-static const float LEAST_SEEN = 0.5f / 255 / 12.92f;
+/* Least linear value that is told from black on a screen: 8 of 255 in an 8-bit file. */
+static const float LEAST_SEEN = 8.0f / 255 / 12.92f;
 static const double LITTLE_LIT = 0.01, MUCH_BURNT_OUT = 0.05;
 
 void relit_light_note(relit_light *seen, const merlin_image *picture, const merlin_image *mask)

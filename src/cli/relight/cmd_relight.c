@@ -120,7 +120,7 @@ static status check_dome(request *r)
         return fail(MERLIN_WRONG_USE, "%s is a file of --rti ptm or lrgb with a --dome, or of no kind that is known",
                     r->output);
     const bool other = r->lamps.count || r->list || r->orbit || r->dome.lp || r->format.given;
-    return r->rti.wanted ? relight_rti_check(&r->rti, count, other) : OK;
+    return r->rti.wanted ? relight_rti_check(&r->rti, count, r->near, other) : OK;
 }
 
 static status check_standard_output(const request *r)
@@ -198,6 +198,11 @@ static status check(request *r)
         return fail(MERLIN_WRONG_USE, "--together is of the lamps of --light, --direction and --lights");
     if (r->together && r->orbit && !r->env)
         return fail(MERLIN_WRONG_USE, "--together goes with an --orbit of an --env, beside which its lamps stand");
+    const bool lamps = r->lamps.count || r->list || r->dome.count || (r->orbit && !r->env && !r->found);
+    if (!lamps && (r->lamps.common.has_power || r->lamps.common.has_color))
+        return fail(MERLIN_WRONG_USE, "--power and --color are of lamps; %s",
+                    r->env ? "surroundings are made brighter by --env-exposure"
+                           : "the found light is made brighter by --exposure");
     if (r->frame && r->orbit == 0) return fail(MERLIN_WRONG_USE, "--frame is the side of an --orbit's frames");
     const bool whole = r->lamps.count || r->list || r->dome.count || r->env || r->found;
     if (r->format.given && !whole && !r->sequence)

@@ -7,6 +7,7 @@
 
 #include "base/file.h"
 #include "cli/relight/relight_parts.h"
+#include "cli/written.h"
 
 bool relight_is_numbered(const char *name, const char *kind)
 {
@@ -15,13 +16,6 @@ bool relight_is_numbered(const char *name, const char *kind)
     for (size_t i = length; i < length + 3; i++)
         if (!isdigit((unsigned char)name[i])) return false;
     return strcmp(name + length + 3, ".png") == 0 || strcmp(name + length + 3, ".jpg") == 0;
-}
-
-static bool was_written(const staged_files *files, const char *path)
-{
-    for (size_t i = 0; i < files->count; i++)
-        if (strcmp(file_name_of(files->at[i]), file_name_of(path)) == 0) return true;
-    return false;
 }
 
 void relight_find_left(const relight_job *job, relight_result *result)
@@ -35,7 +29,7 @@ void relight_find_left(const relight_job *job, relight_result *result)
         const bool beside = (relight_count_whole(job) > 0 && relight_is_numbered(name, "relit_")) ||
                             (job->orbit > 0 && relight_is_numbered(name, "frame_")) ||
                             (job->frames && strncmp(name, "frame_", 6) == 0);
-        if (!beside || was_written(&result->files, paths[i])) continue;
+        if (!beside || written_has(&result->files, paths[i])) continue;
         if (result->left++ == 0) snprintf(result->left_name, sizeof result->left_name, "%s", name);
     }
     file_list_free(paths, count);

@@ -30,13 +30,15 @@ const char *relight_rti_name(const relight_rti *rti)
     return names[rti->basis];
 }
 
-status relight_rti_check(const relight_rti *rti, int count, bool other)
+status relight_rti_check(const relight_rti *rti, int count, bool near, bool other)
 {
     const char *name = relight_rti_name(rti);
     if (count == 0) return fail(MERLIN_WRONG_USE, "--rti is made of the pictures of a --dome");
     if (other)
         return fail(MERLIN_WRONG_USE,
                     "--rti writes no pictures: leave out --light, --direction, --lights, --orbit, --lp and --format");
+    if (near)
+        return fail(MERLIN_WRONG_USE, "--rti is of distant lights, by which viewers relight it: leave out --near");
     if (count < fewest[rti->basis])
         return fail(MERLIN_WRONG_USE, "--rti %s wants a --dome of %d pictures or more, not %d", name,
                     fewest[rti->basis], count);

@@ -10,7 +10,7 @@ status relight_take_rti(const char *text, void *into);
 /* Returns that word again. */
 const char *relight_rti_name(const relight_rti *rti);
 /* Checks it against the number of the dome's pictures; other: whether other lights, lists or formats were asked for. */
-status relight_rti_check(const relight_rti *rti, int count, bool other);
+status relight_rti_check(const relight_rti *rti, int count, bool near, bool other);
 /* Renders the dome's pictures, and writes what they make. */
 status relight_write_rti(relight_work *w);
 

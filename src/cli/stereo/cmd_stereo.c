@@ -10,6 +10,7 @@
 #include "base/progress.h"
 #include "cli/check_replaced.h"
 #include "cli/commands.h"
+#include "cli/left_files.h"
 #include "cli/page.h"
 #include "cli/stage_bar.h"
 #include "cli/stereo/stereo_commands.h"
@@ -347,6 +348,7 @@ static status write_surface(const request *r, const stereo_files *files, stage_b
     watch_tell(shown, "writing", 0);
     status s = cli_interrupted() ? fail(MERLIN_STOPPED, "stopped") : stereo_write(files, surface, &written);
     stage_bar_hide(bar);
+    if (s == OK) left_files_warn(files->folder, &written, &surface->warnings);
     if (s == OK) s = announce(r, files->folder, surface, &written, clock_seconds() - began);
     merlin_files_free(&written);
     return s;
@@ -436,6 +438,7 @@ static status run(request *r)
     status s = output ? OK : fail(MERLIN_NO_MEMORY, "no memory for a file name");
     if (s == OK) s = check_photo_and_mask(r->input, r->capture.mask);
     if (s == OK) s = check_replaced(output, r->files.mesh.count == 0);
+    if (s == OK) s = check_inputs_kept(output, r->input, r->capture.mask);
     if (s == OK) s = check_output(output);
     if (s == OK) s = work(r, output);
     free(output);

@@ -8,6 +8,7 @@
 #include "base/json/json_put.h"
 #include "base/progress.h"
 #include "cli/estimate_write.h"
+#include "cli/left_files.h"
 #include "cli/page.h"
 #include "cli/written.h"
 #include "command/cli.h"
@@ -29,13 +30,25 @@ static status open_model(const universal_request *r, merlin_model **out)
     return s;
 }
 
+/* Lists what one should know about the maps, and about their folder. */
+static void find_doubts(const universal_request *r, const merlin_maps *maps, const staged_files *written,
+                        warnings *doubts)
+{
+    merlin_maps_warnings(maps, doubts);
+    if (r->files->page) page_doubt(maps->crop.side, 0, doubts);
+    left_files_warn(r->files->folder, written, doubts);
+}
+
 static status print_json(const universal_request *r, const merlin_maps *maps, const staged_files *written,
                          double seconds)
 {
+    warnings doubts;
     char *text;
+    find_doubts(r, maps, written, &doubts);
     status s = merlin_maps_report(maps, &text);
     if (s != OK) return s;
     cJSON *report = cJSON_Parse(text);
+    json_line_warnings(report, &doubts);
     json_put_text(report, "input", r->input);
     json_line_files(report, r->files->folder, written);
     json_put_number(report, "seconds_total", seconds);
@@ -68,8 +81,7 @@ static status announce(const universal_request *r, const merlin_maps *maps, cons
     else if (!r->quiet)
         printf("%s: %s (%.2f s, %s)%s\n", r->input, r->files->folder, seconds, written_words(written, amount),
                advice_on(maps, advice, sizeof advice));
-    merlin_maps_warnings(maps, &doubts);
-    if (r->files->page) page_doubt(maps->crop.side, 0, &doubts);
+    find_doubts(r, maps, written, &doubts);
     if (!r->quiet) warnings_print(&doubts, "stereo", r->input, TOLD);
     return s;
 }

@@ -41,8 +41,12 @@ merlin_status merlin_maps_read(const char *folder, merlin_maps *maps)
     char *path = path_in(folder);
     if (!path) return MERLIN_NO_MEMORY;
     exr_file *f = NULL;
-    s = file_exists(path) ? exr_open(path, &f)
-                          : fail(MERLIN_BAD_INPUT, "no maps.exr in %s: run merlin estimate first", folder);
+    s = file_exists(path)
+            ? exr_open(path, &f)
+            : fail(
+                  MERLIN_BAD_INPUT,
+                  "no maps.exr in %s: merlin estimate makes one of a photograph, merlin stereo of a folder of pictures",
+                  folder);
     if (s == OK) s = is_captured(f) ? maps_read_captured(f, path, maps) : maps_read_photographed(f, path, maps);
     if (f) exr_close(f);
     free(path);

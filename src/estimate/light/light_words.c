@@ -31,6 +31,7 @@ int merlin_light_words(const merlin_found_light *light, char *text, int size)
     if (beam) merlin_lamp_words(light->lamp, of_lamp, sizeof of_lamp);
     if (flash && !beam && !rest && !found_light_is_flash(light))
         return snprintf(text, room, "a flash and a little other light");
+    if (light->known && !flash && !beam && !rest) return snprintf(text, room, "light of an unknown kind");
     return snprintf(text, room, "%s%s%s%s", flash ? "a flash" : "", flash && beam ? " and " : "", of_lamp,
                     !rest           ? ""
                     : flash || beam ? ", in a room"

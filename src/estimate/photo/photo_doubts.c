@@ -222,7 +222,7 @@ static int light_sentence(const merlin_maps *maps, char *text, size_t size)
         text, size,
         "it is lit by %s, as far as the model can tell: shape and material are surer by a flash in the dark, "
         "and how bright the albedo is is a guess",
-        *words ? words : "other light than a flash");
+        words);
 }
 
 static const char *plain_words(merlin_doubt doubt)

@@ -24,6 +24,10 @@ static const float scatter = 24 / 255.0f, least_contrast = 16 / 255.0f;
 static const double least_near = 0.85;
 static const float noise = 0.25f;
 
+/* Greatest share of what a mask shows that lies in the middle between nothing and everything, as a photograph's pixels
+ * do and those of wide soft edges do not. */
+static const double most_between = 0.5;
+
 /* Floats above this have a unit of their own. */
 static const float beyond_white = 1.5f;
 
@@ -273,17 +277,39 @@ static bool are_two(tally *t, bool lossy)
     return true;
 }
 
+/* Refuses photographs, whose brightness would pass for coverage. */
+static status check_decided(const char *path, const img *mask)
+{
+    const size_t pixels = img_value_count(mask);
+    size_t between = 0, shown = 0;
+    for (size_t i = 0; i < pixels; i++) {
+        shown += mask->data[i] >= 0.25f;
+        between += mask->data[i] >= 0.25f && mask->data[i] < 0.75f;
+    }
+    const double share = shown ? (double)between / (double)shown : 0;
+    if (share <= most_between) return OK;
+    return fail(MERLIN_BAD_INPUT,
+                "the mask %s looks like a photograph: %.0f %% of what it shows is neither black nor white; save it as "
+                "white on black",
+                path, 100 * share);
+}
+
 static status from_tally(const char *path, const img *values, bool lossy, tally *t, img *mask)
 {
     count_values(values, t);
     if (t->count == 1) return as_it_is(values, mask);
     bool two = are_two(t, lossy);
     if (!two && !t->many) keep_areas(t, (size_t)values->width * (size_t)values->height, lossy);
-    if (t->many || t->count < 2) return from_groups(path, values, mask);
+    if (t->many || t->count < 2) {
+        status s = from_groups(path, values, mask);
+        return s == OK ? check_decided(path, mask) : s;
+    }
     float low = t->at[0].brightness, high = t->at[1].brightness;
     if (t->count > 2) return refuse_labels(path, t, values->channels);
     if (low == high) return refuse_equals(path, t, values->channels);
-    return two ? spread(values, low, high, mask) : between(values, low, high, mask);
+    if (two) return spread(values, low, high, mask);
+    status s = between(values, low, high, mask);
+    return s == OK ? check_decided(path, mask) : s;
 }
 
 static void scale(img *values)

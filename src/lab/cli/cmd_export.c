@@ -149,9 +149,11 @@ static status export_all(export_job *job, staged_files *written)
     json_put_text(list, "model", job->config.name);
     json_put_number(list, "size", job->asked->size);
     job->networks = json_put_array(list, "networks");
-    for (int i = 0; s == OK && i < NETWORKS; i++)
+    for (int i = 0; s == OK && i < NETWORKS; i++) {
         s = has_part(&job->config, network_files[i].part) ? export_network(job, &network_files[i])
                                                           : drop_earlier(job, network_files[i].name);
+        if (s == OK && cli_interrupted()) s = fail(MERLIN_STOPPED, "interrupted; nothing was written");
+    }
     if (s == OK) s = write_list(job, list);
     cJSON_Delete(list);
     return s == OK ? staging_commit(job->files, written) : staging_abort(job->files, s);

@@ -96,7 +96,8 @@ status onnx_write(const char *path, const nn_graph *g, nn_params *params, const 
     } else {
         find_possible(g, choice.possible);
         if (find_needed(g, &choice) == 0)
-            s = fail(MERLIN_WRONG_USE, "none of the network's outputs can be written as ONNX");
+            s = fail(MERLIN_WRONG_USE, "none of the network's outputs can be written as ONNX: those of merlin-point, "
+                                       "merlin-any and merlin-env can");
     }
     if (s == OK) {
         protobuf_text(&o.message, ONNX_GRAPH_NAME, options->name);

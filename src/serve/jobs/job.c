@@ -106,21 +106,23 @@ const job_file *job_find_file(const job *j, const char *name)
     return NULL;
 }
 
-static void remove_all(char *text, const char *what)
+/* Replaces a folder's path by words that are not longer, or removes it. */
+static void replace_all(char *text, const char *what, const char *words)
 {
-    const size_t length = strlen(what);
-    for (char *at; length && (at = strstr(text, what));)
-        memmove(at, at + length, strlen(at + length) + 1);
+    const size_t length = strlen(what), kept = strlen(words) < length ? strlen(words) : 0;
+    for (char *at; length && (at = strstr(text, what));) {
+        memmove(at + kept, at + length, strlen(at + length) + 1);
+        memcpy(at, words, kept);
+    }
 }
 
 void job_hide_folders(const job *j, const store *s, char *message)
 {
     char path[PATH_MAX];
-    remove_all(message, store_path(s, j->form.id, STORE_IN, "", path));
-    remove_all(message, store_path(s, j->form.id, STORE_OUT, "", path));
-    store_path(s, j->form.id, STORE_IN, NULL, path);
-    remove_all(message, path);
-    remove_all(message, store_path(s, j->form.id, STORE_OUT, NULL, path));
+    replace_all(message, store_path(s, j->form.id, STORE_IN, "", path), "");
+    replace_all(message, store_path(s, j->form.id, STORE_OUT, "", path), "");
+    replace_all(message, store_path(s, j->form.id, STORE_IN, NULL, path), "what was sent");
+    replace_all(message, store_path(s, j->form.id, STORE_OUT, NULL, path), "its result");
 }
 
 /* ---- JSON ---- */

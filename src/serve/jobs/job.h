@@ -43,7 +43,8 @@ void job_tell(job *j, const char *stage, float share);
 status job_take_results(job *j, const store *s);
 /* Returns the file of this name, or NULL: a path is never made from a client's text. */
 const job_file *job_find_file(const job *j, const char *name);
-/* Removes the store's folders from a message, as clients know only the files' names. */
+/* Removes the store's folders from a message, as clients know only the files' names; a folder itself is called "what
+ * was sent" or "its result". */
 void job_hide_folders(const job *j, const store *s, char *message);
 /* Returns the job's state for its client. position: number of jobs before it. keep: seconds for which it is kept after
  * its end. */

@@ -3,6 +3,8 @@
 # What is not there is told before weights are read, in what trains, renders, measures and evaluates, too.
 # shellcheck source=tests/cli/support/check.bash
 source "$(dirname "$0")/../../cli/support/check.bash"
+# shellcheck source=tests/cli/support/pictures.bash
+source "$(dirname "$0")/../../cli/support/pictures.bash"
 make_tiny_model
 make_bad_weights
 cd "$scratch" || exit 1
