@@ -35,8 +35,10 @@ double page_cost(double pixels)
 
 void page_doubt(int square, int side, warnings *doubts)
 {
-    if (!side && square > MERLIN_VIEW_SIDE)
-        warnings_add(doubts, "page_reduced",
-                     "the page has %d of the object's %d pixels a side: view --size takes up to %d", MERLIN_VIEW_SIDE,
-                     square, MERLIN_VIEW_MOST_SIDE);
+    const int most = side ? side : MERLIN_VIEW_SIDE;
+    char remedy[64] = "";
+    if (!side) snprintf(remedy, sizeof remedy, ": view --size takes up to %d", MERLIN_VIEW_MOST_SIDE);
+    if (square > most)
+        warnings_add(doubts, "page_reduced", "the page has %d of the object's %d pixels a side%s", most, square,
+                     remedy);
 }
