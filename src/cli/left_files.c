@@ -11,26 +11,33 @@
 
 enum { TOLD = 160 };
 
-/* What one run writes and another does not; the folders are those of merlin relight, export and stereo of maps. */
-static const char *const optional[] = {"roughness.png", "reconstruction.png",
-                                       "error.png",     "confidence.png",
-                                       "mesh.glb",      "mesh.ply",
-                                       "mesh.obj",      PAGE_FILE,
-                                       "relit",         "rti",
-                                       "export",        "stereo"};
+/* What one run writes and another does not, and by which file a folder of merlin relight, export or stereo is known. */
+static const struct {
+    const char *name, *holds;
+} optional[] = {{"roughness.png", ""}, {"reconstruction.png", ""}, {"error.png", ""},          {"confidence.png", ""},
+                {"mesh.glb", ""},      {"mesh.ply", ""},           {"mesh.obj", ""},           {PAGE_FILE, ""},
+                {"relit", ""},         {"rti", "/info.json"},      {"export", "/export.json"}, {"stereo", "/maps.exr"}};
+
+static bool is_left(const char *folder, size_t i, const staged_files *written)
+{
+    char path[64];
+    snprintf(path, sizeof path, "%s%s", optional[i].name, optional[i].holds);
+    return file_is_in(folder, path) && !written_has(written, optional[i].name);
+}
 
 void left_files_warn(const char *folder, const staged_files *written, warnings *doubts)
 {
     char names[TOLD] = "";
     size_t count = 0, length = 0;
-    for (size_t i = 0; i < sizeof optional / sizeof *optional; i++) {
-        if (!file_is_in(folder, optional[i]) || written_has(written, optional[i])) continue;
-        length += (size_t)snprintf(names + length, sizeof names - length, "%s%s", count ? ", " : "", optional[i]);
+    for (size_t i = 0; i < sizeof optional / sizeof *optional && length < sizeof names; i++) {
+        if (!is_left(folder, i, written)) continue;
+        length += (size_t)snprintf(names + length, sizeof names - length, "%s%s", count ? ", " : "", optional[i].name);
         count++;
     }
     if (count)
-        warnings_add(doubts, "files_left", "%s of an earlier run %s still in %s: write %s anew, or remove %s", names,
-                     count == 1 ? "is" : "are", folder, count == 1 ? "it" : "them", count == 1 ? "it" : "them");
+        warnings_add(doubts, "files_left",
+                     "%s in %s %s not of this run, and may show another object: write %s anew, or remove %s", names,
+                     folder, count == 1 ? "is" : "are", count == 1 ? "it" : "them", count == 1 ? "it" : "them");
 }
 
 /* ---- frames of a sequence ---- */

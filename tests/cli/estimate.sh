@@ -63,14 +63,14 @@ succeeds '"disc.merlin/mesh.glb"' estimate disc.hdr --size 64 --mesh --json
 reads_mesh disc.merlin/mesh.glb
 
 echo "files of an earlier run that this one does not write get a word"
-succeeds '"warnings":\[.*"code":"files_left","message":"mesh.glb of an earlier run is still in disc.merlin: write it anew, or remove it"' \
+succeeds '"warnings":\[.*"code":"files_left","message":"mesh.glb in disc.merlin is not of this run, and may show another object: write it anew, or remove it"' \
     estimate disc.hdr --size 64 --json
 mkdir disc.merlin/relit
 succeeds disc.merlin estimate disc.hdr --size 64
-grep -q 'mesh.glb, relit of an earlier run are still in disc.merlin: write them anew' "$scratch/stderr" || complain "no word: $(cat "$scratch/stderr")"
+grep -q 'mesh.glb, relit in disc.merlin are not of this run' "$scratch/stderr" || complain "no word: $(cat "$scratch/stderr")"
 rm -r disc.merlin/relit disc.merlin/mesh.glb
 succeeds disc.merlin estimate disc.hdr --size 64
-grep 'earlier run' "$scratch/stderr" && complain "a word of nothing"
+grep 'this run' "$scratch/stderr" && complain "a word of nothing"
 
 echo "masks are used, and must fit"
 refuses 1 'cannot write disc.merlin/mask.png: it is what was read; copy it' estimate disc.hdr --mask disc.merlin/mask.png --size 64 -o disc.merlin
