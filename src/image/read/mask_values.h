@@ -11,8 +11,8 @@
 /* Computes coverage in [0, 1], 1 channel, from a mask's samples, 1 or 3 channels, which may be scaled: the brighter of
  * two values, or of two areas with soft edges between them, is the object; if other values lie between black and white,
  * it is what is at least half white. MERLIN_BAD_INPUT, naming the file, if more than two values have areas of their
- * own, if nothing is half white and no two values stand out, or if most of what is shown is in the middle between, as in
- * a photograph. lossy: values scatter around the intended ones. */
+ * own, if nothing is half white and no two values stand out, or if most of what is shown is in the middle between, as
+ * in a photograph. lossy: values scatter around the intended ones. */
 status mask_from_values(const char *path, img *values, bool lossy, img *mask);
 /* Computes coverage from an alpha channel, which is coverage already unless it has just two values. */
 status mask_from_alpha(const img *alpha, img *mask);
