@@ -78,7 +78,7 @@ static void light_from_behind_is_told(void **state)
     assert_non_null(strstr(words, "it is lit by a lamp from the right"));
     maps.light = (merlin_found_light){.known = 1}; /* all of it is dark */
     merlin_doubt_message(&maps, MERLIN_DOUBT_LIGHT_ELSEWHERE, words, sizeof words);
-    assert_non_null(strstr(words, "it is lit by other light than a flash, as far"));
+    assert_non_null(strstr(words, "it is lit by light of an unknown kind, as far"));
     maps.light = (merlin_found_light){.known = 1, .flash = 1};
     assert_int_equal(doubts_of(&maps, &(merlin_shot){.flash = MERLIN_FLASH_NONE}), 0);
     merlin_maps_free(&maps);

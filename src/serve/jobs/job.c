@@ -112,7 +112,8 @@ static void replace_all(char *text, const char *what, const char *words)
     const size_t length = strlen(what), kept = strlen(words) < length ? strlen(words) : 0;
     for (char *at; length && (at = strstr(text, what));) {
         memmove(at + kept, at + length, strlen(at + length) + 1);
-        memcpy(at, words, kept);
+        for (size_t i = 0; i < kept; i++)
+            at[i] = words[i];
     }
 }
 
