@@ -11,7 +11,8 @@
 
 enum { TOLD = 160 };
 
-/* What one run writes and another does not, and by which file a folder of merlin relight, export or stereo is known. */
+/* Files and folders that one run writes and another does not; a folder of another command is known by one of its files.
+ */
 static const struct {
     const char *name, *holds;
 } optional[] = {{"roughness.png", ""}, {"reconstruction.png", ""}, {"error.png", ""},          {"confidence.png", ""},
