@@ -27,6 +27,7 @@ static status check_plain(const char *path)
 /* Checks a path before any decoder opens it, and finds the kind of picture. */
 static status look_at(const char *path, picture_kind *kind)
 {
+    static const char *const videos[] = {".mp4", ".m4v", ".mov", ".mkv", ".webm", ".avi", NULL};
     status s = check_plain(path); /* before it is opened: opening a device may have effects */
     if (s != OK) return s;
     int descriptor = file_open_descriptor(path);
@@ -43,8 +44,8 @@ static status look_at(const char *path, picture_kind *kind)
                     format.name);
     return fail(MERLIN_BAD_INPUT,
                 "cannot read %s: it is not a picture of a kind known here (PNG, JPEG, TIFF, WebP, HEIC, GIF, BMP, TGA, "
-                "PNM, EXR, HDR, raw)",
-                path);
+                "PNM, EXR, HDR, raw)%s",
+                path, file_ends_in_any(path, videos) ? ", nor a video" : "");
 }
 
 static bool is_plain(picture_kind kind)
