@@ -29,7 +29,7 @@ class Odd(ValueError):
     """Says what is wrong, without the file's name."""
 
 
-# What reading raises where bytes are missing or mean nothing.
+# Errors that reading raises where bytes are missing or mean nothing.
 DAMAGE = (ValueError, IndexError, KeyError, TypeError, struct.error, zlib.error)
 
 

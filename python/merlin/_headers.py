@@ -151,8 +151,7 @@ StereoSeconds = _struct("surface.seconds", [
 SURFACE_NAMES = ("normal", "albedo", "depth", "residual", "spread", "mask")
 Surface = _struct("surface", [(name, Image) for name in SURFACE_NAMES] + [
     ("camera", Camera), ("method", c_int), ("by_network", c_int), ("lights", POINTER(Light)), ("light_count", c_int),
-    ("lights_near", c_int),
-    ("strengths_unsure", c_int), ("distance_unsure", c_int), ("lights_unsure", c_int), ("warnings", Warnings),
+    ("lights_near", c_int), ("strengths_unsure", c_int), ("distance_unsure", c_int), ("lights_unsure", c_int), ("warnings", Warnings),
     ("keep_edges", c_int), ("picture_count", c_int), ("picture_names", POINTER(c_char_p)), ("lights_in_order", c_int),
     ("skipped", SkippedFiles), ("normal_error", Statistics), ("seconds", StereoSeconds), ("relit", RelitPhoto)])
 

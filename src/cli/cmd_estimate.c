@@ -15,7 +15,6 @@
 #include "cli/estimate_sequence.h"
 #include "cli/estimate_write.h"
 #include "cli/expect.h"
-#include "cli/left_files.h"
 #include "cli/page.h"
 #include "cli/stage_bar.h"
 #include "cli/written.h"
@@ -139,25 +138,14 @@ typedef struct lap_times {
     double write, total;
 } lap_times;
 
-/* Lists what one should know about the maps, and about their folder. */
-static void find_doubts(const request *r, const photo_job *job, const merlin_maps *maps, const staged_files *written,
-                        warnings *doubts)
-{
-    merlin_maps_warnings(maps, doubts);
-    if (r->html) page_doubt(maps->crop.side, 0, doubts);
-    left_files_warn(job->output, written, doubts);
-}
-
 static status print_json(const request *r, const photo_job *job, const merlin_maps *maps, const staged_files *written,
-                         const lap_times *laps)
+                         const warnings *doubts, const lap_times *laps)
 {
-    warnings doubts;
-    find_doubts(r, job, maps, written, &doubts);
     char *text = NULL;
     status s = merlin_maps_report(maps, &text);
     if (s != OK) return s;
     cJSON *report = cJSON_Parse(text), *seconds = cJSON_GetObjectItem(report, "seconds");
-    json_line_warnings(report, &doubts);
+    json_line_warnings(report, doubts);
     json_put_text(report, "input", standard_input_is(job->photo) ? "-" : job->photo);
     json_line_files(report, job->output, written);
     if (job->mask) json_put_text(report, "mask_file", job->mask);
@@ -194,15 +182,15 @@ static status announce(const request *r, const photo_job *job, const merlin_maps
 {
     enum { TOLD = 3 };
     char amount[WRITTEN_WORDS], lit[LIT_BY];
+    warnings doubts;
     status s = OK;
     stage_bar_hide(r->bar);
+    estimate_find_doubts(r->html, job->output, maps, written, &doubts);
     if (r->json)
-        s = print_json(r, job, maps, written, laps);
+        s = print_json(r, job, maps, written, &doubts, laps);
     else if (!r->quiet)
         printf("%s: %s/overview.png (%.2f s, %s)%s\n", standard_input_name(job->photo), job->output, laps->total,
                written_words(written, amount), lit_by(r, maps, lit));
-    warnings doubts;
-    find_doubts(r, job, maps, written, &doubts);
     if (!r->quiet) warnings_print(&doubts, "estimate", standard_input_name(job->photo), TOLD);
     return s;
 }

@@ -183,17 +183,15 @@ static void find_doubts(const sequence_work *w, warnings *doubts)
     left_frames_warn(w->output, &w->written, doubts);
 }
 
-static status print_json(const sequence_work *w)
+static status print_json(const sequence_work *w, const warnings *doubts)
 {
-    warnings doubts;
     char *text = NULL;
-    find_doubts(w, &doubts);
     status s = merlin_sequence_report(w->sequence, merlin_frames_about(w->frames), &text);
     if (s != OK) return s;
     cJSON *report = cJSON_Parse(text);
     free(text);
     if (!report) return fail(MERLIN_NO_MEMORY, "no memory for the report");
-    json_line_warnings(report, &doubts);
+    json_line_warnings(report, doubts);
     json_put_text(report, "input", w->input);
     json_line_files(report, w->output, &w->written);
     json_put_number(report, "seconds_total", clock_seconds() - w->began);
@@ -221,9 +219,9 @@ static status announce(const sequence_work *w)
     const estimate_request *r = w->request;
     warnings doubts;
     stage_bar_hide(r->bar);
-    status s = r->json ? print_json(w) : OK;
-    if (!r->json && !r->quiet) print_words(w);
     find_doubts(w, &doubts);
+    status s = r->json ? print_json(w, &doubts) : OK;
+    if (!r->json && !r->quiet) print_words(w);
     if (!r->quiet) warnings_print(&doubts, "estimate", w->input, TOLD);
     return s;
 }

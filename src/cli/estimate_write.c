@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "cli/estimate_write.h"
 
+#include "cli/left_files.h"
 #include "cli/page.h"
 #include "command/cli.h"
 #include "command/standard_input.h"
@@ -49,4 +50,12 @@ status estimate_write_files(const estimate_write *w, const merlin_maps *maps, bo
     while (all.count > 0)
         s = staging_abort(all.at[--all.count], s);
     return s;
+}
+
+void estimate_find_doubts(bool page, const char *folder, const merlin_maps *maps, const staged_files *written,
+                          warnings *doubts)
+{
+    merlin_maps_warnings(maps, doubts);
+    if (page) page_doubt(maps->crop.side, 0, doubts);
+    left_files_warn(folder, written, doubts);
 }

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 
 #include "base/staging.h"
+#include "base/warnings.h"
 #include "base/watch.h"
 #include "cli/mesh_file.h"
 #include "cli/stage_bar.h"
@@ -36,5 +37,10 @@ typedef struct estimate_write {
 
 /* Writes the maps and the other files that were asked for: all or none. last: no photograph follows. */
 status estimate_write_files(const estimate_write *w, const merlin_maps *maps, bool last, staged_files *written);
+
+/* Lists what one should know about maps that were written into a folder, with a page or without, and about that folder.
+ */
+void estimate_find_doubts(bool page, const char *folder, const merlin_maps *maps, const staged_files *written,
+                          warnings *doubts);
 
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What a command has written. */
+/* Questions about the files that a command has written. */
 #ifndef MERLIN_CLI_WRITTEN_H
 #define MERLIN_CLI_WRITTEN_H
 

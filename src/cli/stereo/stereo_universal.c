@@ -8,8 +8,6 @@
 #include "base/json/json_put.h"
 #include "base/progress.h"
 #include "cli/estimate_write.h"
-#include "cli/left_files.h"
-#include "cli/page.h"
 #include "cli/written.h"
 #include "command/cli.h"
 #include "command/json_line.h"
@@ -30,25 +28,14 @@ static status open_model(const universal_request *r, merlin_model **out)
     return s;
 }
 
-/* Lists what one should know about the maps, and about their folder. */
-static void find_doubts(const universal_request *r, const merlin_maps *maps, const staged_files *written,
-                        warnings *doubts)
-{
-    merlin_maps_warnings(maps, doubts);
-    if (r->files->page) page_doubt(maps->crop.side, 0, doubts);
-    left_files_warn(r->files->folder, written, doubts);
-}
-
 static status print_json(const universal_request *r, const merlin_maps *maps, const staged_files *written,
-                         double seconds)
+                         const warnings *doubts, double seconds)
 {
-    warnings doubts;
     char *text;
-    find_doubts(r, maps, written, &doubts);
     status s = merlin_maps_report(maps, &text);
     if (s != OK) return s;
     cJSON *report = cJSON_Parse(text);
-    json_line_warnings(report, &doubts);
+    json_line_warnings(report, doubts);
     json_put_text(report, "input", r->input);
     json_line_files(report, r->files->folder, written);
     json_put_number(report, "seconds_total", seconds);
@@ -76,12 +63,12 @@ static status announce(const universal_request *r, const merlin_maps *maps, cons
     warnings doubts;
     status s = OK;
     stage_bar_hide(r->bar);
+    estimate_find_doubts(r->files->page, r->files->folder, maps, written, &doubts);
     if (r->json)
-        s = print_json(r, maps, written, seconds);
+        s = print_json(r, maps, written, &doubts, seconds);
     else if (!r->quiet)
         printf("%s: %s (%.2f s, %s)%s\n", r->input, r->files->folder, seconds, written_words(written, amount),
                advice_on(maps, advice, sizeof advice));
-    find_doubts(r, maps, written, &doubts);
     if (!r->quiet) warnings_print(&doubts, "stereo", r->input, TOLD);
     return s;
 }
