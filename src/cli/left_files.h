@@ -7,8 +7,8 @@
 #include "base/staging.h"
 #include "base/warnings.h"
 
-/* Adds files_left to the warnings if a folder of maps still has maps, meshes, a page or pictures in other light that
- * this run has not written, or folders of a sequence's frames. */
+/* Adds files_left to the warnings if a folder of maps still has maps, meshes, a page, or folders of merlin relight,
+ * export or stereo that this run has not written. */
 void left_files_warn(const char *folder, const staged_files *written, warnings *doubts);
 /* Likewise of a sequence's folder: frames that this run has not written. */
 void left_frames_warn(const char *folder, const staged_files *written, warnings *doubts);
