@@ -75,6 +75,27 @@ cp out/maps.exr alone.exr
 on_terminal ./halted "${near[@]}"
 cmp -s alone.exr out/maps.exr || complain "a bar changes the surface"
 
+echo "an interrupt takes the bar away"
+: >screen # the last one has a bar
+script -qec 'echo $$ >pid; exec "$MERLIN" relight disc.merlin --orbit 240 --frame 1024 -o long' /dev/null </dev/null >screen 2>&1 &
+for _ in {1..600}; do
+    has_bar && break
+    sleep 0.1
+done
+kill -INT "$(<pid)"
+wait $! && complain "an interrupted command exits with 0"
+is_cleared || complain "an interrupt leaves the bar: $(<screen)"
+grep -q 'K.*merlin relight: interrupted' screen || complain "an interrupt is not told: $(<screen)"
+absent long
+
+echo "a refused picture's line is beside no bar"
+head -c 2000 dome/dome_011.png >broken && mv broken dome/dome_011.png
+on_terminal ./halted "${near[@]}" && complain "a broken picture was taken"
+grep -q '^merlin stereo: ' <(tr '\r' '\n' <screen | sed 's/^\x1b\[K//') || complain "said: $(<screen)"
+has_bar && ! is_cleared && complain "a failure leaves the bar: $(<screen)"
+
+sanitized && finish # one command has been seen to draw, to be interrupted and to fail
+
 echo "estimate"
 photo=(estimate "$MERLIN_SOURCE_DIR/examples/demo.png" --model merlin-point -o photo)
 shows_bar '\(reading\|estimating\|refining\|writing\)' ./halted "${photo[@]}"
@@ -98,21 +119,4 @@ shows_none ./halted "${orbit[@]}" -q
 echo "what is soon done has none"
 shows_none "$MERLIN" relight disc.merlin --light 0.5,0.2,-0.4 -o soon
 
-echo "an interrupt takes the bar away"
-script -qec 'echo $$ >pid; exec "$MERLIN" relight disc.merlin --orbit 240 --frame 1024 -o long' /dev/null </dev/null >screen 2>&1 &
-for _ in {1..600}; do
-    has_bar && break
-    sleep 0.1
-done
-kill -INT "$(<pid)"
-wait $! && complain "an interrupted command exits with 0"
-is_cleared || complain "an interrupt leaves the bar: $(<screen)"
-grep -q 'K.*merlin relight: interrupted' screen || complain "an interrupt is not told: $(<screen)"
-absent long
-
-echo "a refused picture's line is beside no bar"
-head -c 2000 dome/dome_011.png >broken && mv broken dome/dome_011.png
-on_terminal ./halted "${near[@]}" && complain "a broken picture was taken"
-grep -q '^merlin stereo: ' <(tr '\r' '\n' <screen | sed 's/^\x1b\[K//') || complain "said: $(<screen)"
-has_bar && ! is_cleared && complain "a failure leaves the bar: $(<screen)"
 finish

@@ -10,7 +10,7 @@ export OMP_WAIT_POLICY=passive # other tests may run beside this one
 source_folder=${MERLIN_SOURCE_DIR:?} examples=$MERLIN_SOURCE_DIR/examples hands=$(cat "$(dirname "$0")/support/browser_hands.js")
 cd "$scratch" || exit 1
 
-if grep -q 'MERLIN_SANITIZE:BOOL=ON' "$(dirname "$MERLIN")/CMakeCache.txt"; then
+if sanitized; then
     echo "skipped: a browser runs the page without sanitizers"
     exit 77
 fi

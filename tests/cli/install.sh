@@ -8,7 +8,7 @@ source "$(dirname "$0")/support/pictures.bash"
 export OMP_WAIT_POLICY=passive # other tests may run beside this one
 build=$(dirname "$MERLIN")
 examples=$MERLIN_SOURCE_DIR/examples
-if grep -q 'MERLIN_SANITIZE:BOOL=ON' "$build/CMakeCache.txt"; then
+if sanitized; then
     echo "a sanitized library wants a sanitized program: not tested"
     exit 0
 fi

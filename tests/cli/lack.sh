@@ -7,7 +7,7 @@ make_tiny_model
 photo=$(dirname "$0")/../../examples/demo.png
 
 # with MEGABYTES COMMAND...: or what sanitizers need, which is more than there is
-if ldd "$MERLIN" 2>/dev/null | grep -q 'lib[at]san'; then
+if sanitized; then
     echo "skipped: sanitizers take all addresses" >&2
 else
     with() { (ulimit -v $((1000 * $1)) && shift && "$@"); }

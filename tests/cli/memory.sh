@@ -3,7 +3,7 @@
 # How much memory estimate holds for photographs of many megapixels: what docs/performance.md says.
 # shellcheck source=tests/cli/support/check.bash
 source "$(dirname "$0")/support/check.bash"
-if grep -q 'MERLIN_SANITIZE:BOOL=ON' "${MERLIN%/*}/CMakeCache.txt"; then
+if sanitized; then
     echo "skipped: sanitizers hold more"
     exit 77
 fi

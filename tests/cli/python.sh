@@ -15,14 +15,13 @@ if ! "$python" -c 'import setuptools, wheel, pip, numpy, pytest' 2>/dev/null; th
     echo "skipped: the Python package is tested with python3-pytest, -numpy, -pip, -setuptools and -wheel"
     exit 77
 fi
-if grep -q 'MERLIN_SANITIZE:BOOL=ON' "$(dirname "$MERLIN")/CMakeCache.txt"; then
+if sanitized; then
     echo "its own tests of arrays and refusals, under sanitizers"
     sanitizers=$(gcc -print-file-name=libasan.so):$(gcc -print-file-name=libubsan.so)
     LD_PRELOAD=$sanitizers ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1 MERLIN_LIBRARY=$library \
         "$python" -m pytest -q "$MERLIN_SOURCE_DIR"/python/tests/test_{arrays,refusals,stereo}.py ||
         complain "pytest exited with $?"
     finish
-    exit
 fi
 
 echo "its own tests"

@@ -10,7 +10,7 @@ export OMP_WAIT_POLICY=passive # other tests may run beside this one
 unset MERLIN_MODEL
 build=$(dirname "$MERLIN")
 docs=$MERLIN_SOURCE_DIR/docs
-if grep -q 'MERLIN_SANITIZE:BOOL=ON' "$build/CMakeCache.txt"; then
+if sanitized; then
     echo "skipped: under a sanitizer they take minutes; each has a test of its own"
     exit 77
 fi

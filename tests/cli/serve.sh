@@ -24,6 +24,13 @@ echo "the server's folder is open to its owner alone"
 [[ $(stat -c %a tmp/merlin-serve-*) == 700 ]] || complain "its mode is $(stat -c %a tmp/merlin-serve-*)"
 refuses 1 "cannot listen at 127.0.0.1, port $port" "$MERLIN" serve --port "$port"
 
+echo "a mask is found and sent back, at a page's size"
+mask=$(submit mask -F photo=@"$demo" -F side=256)
+told "$mask" | grep -q '"width":512,"height":512,"mask_source":"' || complain "$(told "$mask")"
+fetches "$mask" mask.png mask.png
+fetches "$mask" photo.png cup.png
+demo=$PWD/cup.png # from here on: small pictures take the same ways, and are soon done
+
 echo "maps over HTTP are merlin estimate's"
 "$MERLIN" estimate "$demo" -o own -q
 job=$(submit estimate -F photo=@"$demo")
@@ -33,7 +40,7 @@ for name in maps.exr albedo.png normal.png mask.png; do
     cmp -s got "own/$name" || complain "$name is another than merlin estimate's"
 done
 fetches "$job" viewer.html viewer.html
-grep -q '"name":"demo"' viewer.html || complain "the viewer has no name"
+grep -q '"name":"cup"' viewer.html || complain "the viewer has no name"
 asks 200 . "$site/v1/jobs/$job/files.zip"
 if command -v unzip >/dev/null; then
     unzip -q body -d unzipped || complain "the archive is broken: $(unzip -t body | tail -3)"
@@ -44,11 +51,9 @@ fi
 asks 404 "no such job" "$site/v1/jobs/00000000000000000000000000000000/files.zip"
 [[ -z $(ls -A tmp/merlin-serve-*/"$job"/in) ]] || complain "the upload stays: $(ls tmp/merlin-serve-*/"$job"/in)"
 
-echo "a mask is found, corrected and sent back, at a page's size"
-mask=$(submit mask -F photo=@"$demo" -F side=128)
-told "$mask" | grep -q '"width":512,"height":512,"mask_source":"' || complain "$(told "$mask")"
-fetches "$mask" mask.png mask.png
-fetches "$mask" photo.png photo.png
+echo "a mask that was corrected is taken, also of another size"
+small=$(submit mask -F photo=@"$demo" -F side=128)
+fetches "$small" mask.png mask.png
 painted=$(submit estimate -F photo=@"$demo" -F mask=@mask.png -F size=256 -F view=0 -F mesh=1)
 told "$painted" | grep -q '"state":"done".*"mesh.glb"' || complain "a small mask: $(told "$painted")"
 told "$painted" | grep -q viewer.html && complain "view=0 makes a viewer"

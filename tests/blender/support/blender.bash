@@ -20,7 +20,7 @@ needs_blender() {
         echo "skipped: Blender's Python has no numpy (apt-get install python3-numpy)"
         exit 77
     fi
-    if grep -q 'MERLIN_SANITIZE:BOOL=ON' "$(dirname "$MERLIN")/CMakeCache.txt"; then
+    if sanitized; then
         echo "skipped: the add-on calls a program, which has tests of its own under a sanitizer"
         exit 77
     fi

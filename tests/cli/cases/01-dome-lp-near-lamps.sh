@@ -11,6 +11,7 @@ succeeds flat "$MERLIN" stereo dome -o flat
 normals_within 1 maps flat
 pictures=(dome/*.png)
 [ ${#pictures[@]} = 50 ] || complain "among the dome's 50 pictures are other ones: ${#pictures[@]}"
+sanitized && finish
 
 # what fitters by least squares make of JPEGs without gloss
 succeeds matte "$MERLIN" relight maps --dome 50 --lp --matte --format jpg -o matte

@@ -6,13 +6,14 @@ source "$(dirname "$0")/../support/cases.bash"
 case_begin 09-lp-about-the-object
 
 succeeds right "$MERLIN" stereo camera --near --fov 25 -o right
+succeeds far "$MERLIN" stereo . --fov 25 -o far
+grep -q 'taken for near ones: the camera then is 600 from there' "$scratch/stderr" || complain "$(cat "$scratch/stderr")"
+normals_within 0.1 right far
+sanitized && finish
 succeeds a "$MERLIN" stereo . --near --fov 25 -o a
 normals_within 0.1 right a
 succeeds b "$MERLIN" stereo . --near --fov 25 --distance 600 -o b
 normals_within 0.1 right b
-succeeds far "$MERLIN" stereo . --fov 25 -o far
-normals_within 0.1 right far
-grep -q 'taken for near ones: the camera then is 600 from there' "$scratch/stderr" || complain "$(cat "$scratch/stderr")"
 succeeds plain "$MERLIN" stereo . -o plain
 normals_within 0.5 right plain
 

@@ -31,6 +31,6 @@ normals_within() {
 
 # bounded COMMAND...: with at most 10 s and, but under sanitizers, which map terabytes, 1.5 GB of addresses.
 bounded() (
-    ldd "$MERLIN" 2>/dev/null | grep -q 'lib[at]san' || ulimit -v 1500000
+    sanitized || ulimit -v 1500000
     timeout 10 "$@"
 )

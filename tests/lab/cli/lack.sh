@@ -6,7 +6,7 @@ source "$(dirname "$0")/../../cli/support/check.bash"
 train_tiny_model
 
 # with MEGABYTES COMMAND...: or what sanitizers need, which is more than there is
-if ldd "$MERLIN_LAB" 2>/dev/null | grep -q 'lib[at]san'; then
+if sanitized; then
     echo "skipped: sanitizers take all addresses" >&2
 else
     with() { (ulimit -v $((1000 * $1)) && shift && "$@"); }
