@@ -60,6 +60,8 @@ typedef struct merlin_params {
     int flash;        /* 1: its only light was a flash at the lens, which models of any light use */
     float fov;        /* horizontal field of view in degrees, from 1 to 150; 0: by shot, if that has the lens */
     merlin_hint hint; /* where the object is, for the search; MERLIN_WRONG_USE with a mask */
+    const struct merlin_near_network *near_network; /* merlin_maps_from_capture: of near lights (merlin/stereo.h), for
+                                                     * 3 pictures and more whose lens is known; NULL: without */
     int last; /* 1: no photograph follows: the model frees early what it would keep for the next one. It can still write
                * and relight these maps */
 } merlin_params;

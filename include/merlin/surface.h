@@ -50,9 +50,10 @@ merlin_status merlin_stereo_from_maps(merlin_model *model, const merlin_maps *ma
 
 /* Makes maps of the object of a capture from its pictures alone, of one or more of them: its lights may be unknown, and
  * are ignored. The model is one of any light, and sees up to 32 of them; from 7 pictures on
- * photometric stereo refines its normals where that explains the pictures by a similar surface (maps.refined). The
- * capture's mask is the object; without one it is searched for in all pictures. photo and light are those of the first
- * picture. params NULL: the defaults; flash is ignored. */
+ * photometric stereo refines its normals where that explains the pictures by a similar surface (maps.refined). Where
+ * the capture's field of view is known and its lights turn out to be near, params->near_network makes that better from
+ * 3 pictures on. The capture's mask is the object; without one it is searched for in all pictures. photo and light are
+ * those of the first picture. params NULL: the defaults; flash is ignored. */
 merlin_status merlin_maps_from_capture(merlin_model *model, const merlin_capture *capture, const merlin_params *params,
                                        merlin_maps *maps);
 

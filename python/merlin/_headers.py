@@ -83,7 +83,8 @@ Hint = _struct("hint", [("point_count", c_int), ("point", Point * MOST_POINTS), 
 LEAST_SIZE, LARGEST_SIZE, SIZE_STEP = 64, 512, 32
 Params = _struct("params", [
     ("size", c_int), ("views", c_int), ("auto_exposure", c_int), ("exposure", c_float), *_WATCH, ("shot", Shot),
-    ("flash", c_int), ("fov", c_float), ("hint", Hint), ("last", c_int)])
+    ("flash", c_int), ("fov", c_float), ("hint", Hint), ("near_network", c_void_p),
+    ("last", c_int)])
 Object = _struct("object", [("mask", Image), ("source", c_int), ("confidence", c_float), ("seconds", c_double)])
 
 # ---- photos.h ----

@@ -156,6 +156,9 @@ class Capture:
         params = call("params_default")
         params.views, params.fov = whole(views, "views"), 0 if fov is None else real(fov, "fov")
         params.hint = hint_of(points, box)
+        network = _near_network("auto", None)
+        if network is not None:
+            params.near_network = network.struct
         watch = Watch(progress, stop)
         watch.put(params)
         owner = Owner(h.Maps(), "maps_free")

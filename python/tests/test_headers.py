@@ -96,7 +96,7 @@ def test_every_field_of_the_headers_is_bound(source):
             if callback:
                 names.append(callback.group(1))
             elif statement.strip():
-                kind, rest = re.match(r"\s*((?:const )?\w+)\s*(.*)", statement, re.S).groups()
+                kind, rest = re.match(r"\s*((?:const )?(?:struct )?\w+)\s*(.*)", statement, re.S).groups()
                 names += [re.match(r"[\s*]*(\w+)", one).group(1) for one in rest.split(",")]
         assert names == [field for field, _kind in structure._fields_], structure.c_name
 

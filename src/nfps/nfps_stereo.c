@@ -66,9 +66,9 @@ static status frame_of(const merlin_capture *c, frame *f)
 }
 
 /* Lists the scales' sizes; returns how many there are. */
-static int list_sizes(int side, int sizes[MOST_SCALES])
+static int list_sizes(int side, int largest, int sizes[MOST_SCALES])
 {
-    const int finest = side < LARGEST ? side : LARGEST;
+    const int finest = side < largest ? side : largest;
     int count = 0;
     for (int size = COARSEST; (float)size < NEARLY * (float)finest; size *= 2)
         sizes[count++] = size;
@@ -238,7 +238,7 @@ status nfps_stereo(const nfps_network *n, const merlin_capture *c, const nfps_op
     status s = check(c);
     if (s == OK) s = frame_of(c, &f);
     if (s != OK) return s;
-    const int count = list_sizes(f.side, sizes);
+    const int count = list_sizes(f.side, options->largest ? options->largest : LARGEST, sizes);
     scale scales[MOST_SCALES] = {0};
     for (int i = 0; i < count && s == OK; i++)
         s = scale_new(&f, sizes[i], &scales[i]);

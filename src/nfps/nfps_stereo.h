@@ -14,6 +14,7 @@
 #include "stereo/methods/guide.h"
 
 typedef struct nfps_options {
+    int largest;        /* side up to which pictures are seen; 0: 512 */
     bool estimated;     /* the lights are estimates, off by several degrees */
     const watch *watch; /* may be NULL */
 } nfps_options;

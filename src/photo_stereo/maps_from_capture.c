@@ -186,8 +186,9 @@ static status refine(const seen *s, const merlin_params *params, merlin_maps *ma
     }
     /* a start from lights of which some are unknown would be a wrong one */
     const bool all_known = s->compares && s->count == s->capture->count;
-    const prior_lights lights = {light, all_known ? compared : NULL, near};
-    if (st == OK) st = prior_stereo_refine(s->capture, &lights, params->stop, maps);
+    const prior_stereo how = {
+        s->capture, {light, all_known ? compared : NULL, near}, params->near_network, params->stop};
+    if (st == OK) st = prior_stereo_refine(&how, maps);
     free(light);
     free(near);
     return st;

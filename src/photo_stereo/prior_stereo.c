@@ -8,6 +8,7 @@
 #include "estimate/surface/fuse.h"
 #include "merlin/lights.h"
 #include "photo_stereo/measured_albedo.h"
+#include "photo_stereo/near_refine.h"
 #include "stereo/integrate/integrate.h"
 #include "stereo/methods/solve.h"
 
@@ -124,27 +125,28 @@ static void expectation_free(expectation *e)
 }
 
 /* Solves the maps' object as if its lights were unknown. */
-static status solve(const merlin_capture *capture, const expectation *e, int (*stop)(void), merlin_surface *out)
+static status solve(const prior_stereo *p, const expectation *e, merlin_surface *out)
 {
-    merlin_capture c = *capture;
-    const pst_expected expected = {&e->normal, e->depth, e->light, e->compared, e->near};
+    merlin_capture c = *p->capture;
+    const pst_expected expected = {&e->normal, e->depth, e->light, e->compared, e->near, 0};
     c.lighting = MERLIN_UNKNOWN_LIGHTS;
     c.mask = e->mask;
-    return pst_solve_expecting(
-        &c, &(merlin_stereo_params){.method = MERLIN_STEREO_UNCALIBRATED, .unchecked = 1, .stop = stop}, &expected,
+    status s = pst_solve_expecting(
+        &c, &(merlin_stereo_params){.method = MERLIN_STEREO_UNCALIBRATED, .unchecked = 1, .stop = p->stop}, &expected,
         out);
+    return s == OK ? near_refine(&(near_refinement){p->near, &c, &expected, p->stop}, out) : s;
 }
 
-status prior_stereo_refine(const merlin_capture *capture, const prior_lights *lights, int (*stop)(void),
-                           merlin_maps *maps)
+status prior_stereo_refine(const prior_stereo *p, merlin_maps *maps)
 {
-    if (capture->count < (lights->compared ? FEWEST : PST_FEWEST_UNKNOWN)) return OK;
+    const int count = p->capture->count;
+    if (count < (p->lights.compared ? FEWEST : PST_FEWEST_UNKNOWN)) return OK;
     expectation e;
     merlin_surface found = {0};
-    status s = expect(maps, lights, capture->count, &e);
-    if (s == OK) s = solve(capture, &e, stop, &found);
+    status s = expect(maps, &p->lights, count, &e);
+    if (s == OK) s = solve(p, &e, &found);
     const bool taken = s == OK && !found.lights_unsure;
-    if (taken) take(&found, capture->count, maps);
+    if (taken) take(&found, count, maps);
     merlin_surface_free(&found); /* before the depth is integrated, as that needs as much memory again */
     expectation_free(&e);
     if (taken) s = refit_depth(maps);

@@ -31,6 +31,13 @@ grep -q '"further_light":{"words":"a lamp ' stdout || complain "it does not say 
 succeeds 'next, a lamp .* tells most$' stereo two
 refuses 2 'is for flashes' "$MERLIN" stereo folder --method universal --model merlin-point
 
+echo "near lamps before a known lens are found again by a network"
+"$MERLIN" relight maps --dome 5 --near -o lamps --quiet || complain "no pictures under near lamps"
+mkdir torch
+cp lamps/dome_*.png lamps/mask.* torch
+succeeds '"refined":true' "$MERLIN" stereo torch --size 64 --views 1 --fov 60 --json -o torch.maps
+within "$("$NORMALS_DIFFER" torch.maps maps)" 12 || complain "its normals are another object's"
+
 echo "what is wrong with the files is told"
 cp dome/dome_001.png two/dome_002.png
 cp dome/mask.webp two/other_mask.webp

@@ -16,7 +16,7 @@
 
 #include <cmocka.h>
 
-#include "../stereo/ball.h"
+#include "ball.h"
 
 enum { LIGHTS = 12 };
 #define MODELS MERLIN_SOURCE_DIR "/models/"

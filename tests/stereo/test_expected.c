@@ -43,7 +43,7 @@ static void expect(const merlin_capture *c, const vec3 *light, float flatter, ex
 static double solve_expecting(const merlin_capture *c, const expectation *e, bool *unsure)
 {
     merlin_surface s;
-    if (pst_solve_expecting(c, &unknown, &(pst_expected){&e->normal, NULL, e->light, NULL, NULL}, &s) != OK)
+    if (pst_solve_expecting(c, &unknown, &(pst_expected){.normal = &e->normal, .light = e->light}, &s) != OK)
         fail_msg("%s", status_message());
     const double angle = mean_angle(c, &s.normal);
     *unsure = s.lights_unsure;
@@ -155,7 +155,7 @@ static void few_pictures_correct_what_is_expected(void **state)
     merlin_surface s;
     ball_expectation e;
     ball_under_torches(&c, &e);
-    const pst_expected expected = {&e.normal, &e.depth, e.light, e.light, e.near};
+    const pst_expected expected = {&e.normal, &e.depth, e.light, e.light, e.near, 0};
     assert_int_equal(pst_solve_expecting(&c, &unknown, &expected, &s), OK);
     const double before = mean_angle(&c, &e.normal), after = mean_angle(&c, &s.normal);
     print_message("four pictures: %.2f degrees, expected %.2f\n", after, before);
@@ -163,7 +163,7 @@ static void few_pictures_correct_what_is_expected(void **state)
     assert_false(s.lights_unsure);
     merlin_surface_free(&s);
     /* without the lights' distances so few are refused, as they are without anything */
-    const pst_expected coarse = {&e.normal, NULL, e.light, NULL, NULL};
+    const pst_expected coarse = {.normal = &e.normal, .light = e.light};
     assert_int_equal(pst_solve_expecting(&c, &unknown, &coarse, &s), MERLIN_BAD_INPUT);
     assert_int_equal(pst_solve(&c, &unknown, &s), MERLIN_BAD_INPUT);
     c.count = 1;
@@ -187,7 +187,7 @@ static void few_pictures_of_several_objects_are_unsure(void **state)
             rng r = rng_at(3, (uint64_t)(i / BALL_SIZE / 12 * 100 + i % BALL_SIZE / 12), (uint64_t)k);
             if (rng_uniform(&r) < 0.5f) c.picture[k][i] = (uint16_t)(c.picture[k][i] / 4);
         }
-    const pst_expected expected = {&e.normal, &e.depth, e.light, e.light, e.near};
+    const pst_expected expected = {&e.normal, &e.depth, e.light, e.light, e.near, 0};
     assert_int_equal(pst_solve_expecting(&c, &unknown, &expected, &s), OK);
     assert_true(s.lights_unsure);
     merlin_surface_free(&s);

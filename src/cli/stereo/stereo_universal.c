@@ -13,13 +13,15 @@
 #include "command/json_line.h"
 #include "command/photos.h"
 
-/* Opens the weights that were asked for, else those for any light; flashes have no network of their own here. */
-static status open_model(const universal_request *r, merlin_model **out)
+/* Opens the weights that were asked for, which stand alone, or those for any light and what helps them; flashes have no
+ * network of their own here. */
+static status open_models(const universal_request *r, merlin_model **out, merlin_near_network **near)
 {
     char *weights = NULL, *flash = NULL;
     status s = photo_find_models(r->weights, &weights, &flash);
     if (s == OK) s = merlin_model_open(weights, out);
     if (s == OK) s = photo_add_several(flash, *out);
+    if (s == OK && flash) s = photo_open_near(NULL, false, near);
     free(weights);
     free(flash);
     if (s == OK) return OK;
@@ -84,10 +86,14 @@ static status write(const universal_request *r, merlin_model *model, const merli
 status stereo_universal(const universal_request *r, const merlin_capture *capture)
 {
     merlin_model *model = NULL;
+    merlin_near_network *near = NULL;
     merlin_maps maps = {0};
     staged_files written = {0};
-    status s = open_model(r, &model);
-    if (s == OK) s = merlin_maps_from_capture(model, capture, &r->params, &maps);
+    merlin_params params = r->params;
+    status s = open_models(r, &model, &near);
+    params.near_network = near;
+    if (s == OK) s = merlin_maps_from_capture(model, capture, &params, &maps);
+    merlin_near_network_close(near);
     if (s == OK) s = write(r, model, &maps, &written);
     if (s == OK) s = announce(r, &maps, &written, clock_seconds() - r->began);
     merlin_files_free(&written);

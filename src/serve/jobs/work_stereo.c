@@ -187,6 +187,7 @@ static status see_together(const work_context *w, const stereo_request *r)
     merlin_capture *capture = NULL;
     merlin_maps maps = {.size = 0};
     params.fov = r->field_of_view;
+    params.near_network = w->near;
     params.stop = w->stop;
     params.progress = w->progress;
     params.progress_context = w->progress_context;

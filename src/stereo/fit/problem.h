@@ -33,6 +33,7 @@ typedef struct pst_expected {
      * from the middle of the object, 1: as far as the camera; NULL: nobody did */
     const vec3 *compared;
     const float *near;
+    float doubt_lights; /* share of what is held against near lights that differ from `compared`; 0: all of it */
 } pst_expected;
 
 typedef struct pst_problem {

@@ -95,7 +95,8 @@ static float log_distance(const bundle *b, int light)
 static double add_expected_lights(const bundle *b, bundle_equations *y)
 {
     const bundle_expected *e = b->expected;
-    const double trusted = trust(b);
+    const float doubt = b->problem->expected->doubt_lights;
+    const double trusted = trust(b) * (doubt > 0 ? (double)doubt : 1);
     double cost = 0;
     for (int k = 0; k < b->lights; k++) {
         const double weight = trusted * (double)e->sure[k] * b->cells, far = expected_distance * weight;

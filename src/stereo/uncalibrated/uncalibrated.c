@@ -276,8 +276,18 @@ static status find_by_fewer(const pst_problem *p, hypothesis *near, hypothesis *
     return s;
 }
 
-/* Solves with these lights and stores them in the surface, but no depth and positions in the space of an unknown
+/* Says that the surface's lights have positions, or removes these and the depth, which are in the space of an unknown
  * camera. */
+static void name_places(const pst_problem *p, bool camera_known, merlin_surface *out)
+{
+    out->lights_near = camera_known;
+    if (camera_known) return;
+    img_free(&out->depth);
+    for (int k = 0; k < p->capture->count && out->lights; k++)
+        vec3_put((vec3){0}, out->lights[k].position);
+}
+
+/* Solves with these lights and stores them in the surface. */
 static status solve_as(const pst_problem *p, hypothesis *h, bool camera_known, merlin_surface *out)
 {
     out->lights = h->light;
@@ -286,11 +296,14 @@ static status solve_as(const pst_problem *p, hypothesis *h, bool camera_known, m
     found.light = out->lights;
     if (!h->depth.data) return pst_solve_robust(&found, out);
     status s = solve_near(&found, &h->depth, out);
-    out->lights_near = camera_known;
-    if (camera_known) return s;
-    img_free(&out->depth);
-    for (int k = 0; k < p->capture->count; k++)
-        vec3_put((vec3){0}, out->lights[k].position);
+    name_places(p, camera_known, out);
+    return s;
+}
+
+static status solve_few(const pst_problem *p, bool camera_known, merlin_surface *out)
+{
+    status s = pst_solve_few(p, out);
+    name_places(p, camera_known, out);
     return s;
 }
 
@@ -322,14 +335,14 @@ status pst_solve_uncalibrated(const pst_problem *p, merlin_surface *out)
     pst_problem q = *p;
     seen.camera = perspective_of(c);
     q.capture = &seen;
-    if (few) return pst_solve_few(&q, out);
+    const bool camera_known = pinhole_is_near(&c->camera);
+    if (few) return solve_few(&q, camera_known, out);
     hypothesis near = {.light = calloc(count, sizeof *near.light)};
     hypothesis distant = {.light = calloc(count, sizeof *distant.light)};
     status s = near.light && distant.light ? OK : fail(MERLIN_NO_MEMORY, "no memory for %zu lights", count);
     if (s == OK) s = check_not_flat(&q);
     if (s == OK) s = find_by_fewer(&q, &near, &distant);
     if (s == OK) {
-        bool camera_known = pinhole_is_near(&c->camera);
         bool are_near = near.cost < clearly * distant.cost;
         s = solve_as(&q, are_near ? &near : &distant, camera_known, out);
         if (s == OK) out->lights_unsure = is_unsure(p, are_near ? &near : &distant, are_near);

@@ -25,6 +25,7 @@ static const char help[] =
     "  --seed S         other rendered objects (default 2000)\n"
     "  --model W        weights (default: merlin-any)\n"
     "  --several W      weights that see the pictures together (default: merlin-several, where it is there)\n"
+    "  --nfps W         weights of the network of near lights (default: merlin-nfps, where it is there)\n"
     "  --count N        only the first N objects\n"
     "  --views N        maps as merlin estimate --views N makes them (default 4, as there)\n"
     "      --json       report on standard output as JSON\n"
@@ -34,6 +35,7 @@ static const char help[] =
 
 typedef struct request {
     unknown_options options;
+    const char *nfps;
     bool json, help;
 } request;
 
@@ -43,6 +45,7 @@ static status parse(int argc, char **argv, request *r)
         {"data", .text = &r->options.data},
         {"model", .text = &r->options.weights},
         {"several", .text = &r->options.several},
+        {"nfps", .text = &r->nfps},
         {"seed", .whole = &r->options.seed, .low = 0, .high = 2147483647},
         {"count", .count = &r->options.count, .low = 1, .high = 1000000},
         {"views", .integer = &r->options.views, .low = 1, .high = 8},
@@ -71,15 +74,19 @@ int eval_unknown(int argc, char **argv)
     if (r.help) return fputs(help, stdout) < 0;
     cli_catch_interrupts();
     char *weights = NULL, *flash = NULL, *several = NULL;
+    merlin_near_network *near = NULL;
     unknown_table table;
     status s = photo_find_models(r.options.weights ? r.options.weights : "merlin-any", &weights, &flash);
     if (s == OK) s = photo_find_several(r.options.several, &several);
+    if (s == OK) s = photo_open_near(r.nfps, false, &near);
     r.options.weights = weights;
     r.options.several = several;
+    r.options.near = near;
     if (s == OK) s = unknown_table_run(&r.options, &table);
     free(weights);
     free(flash);
     free(several);
+    merlin_near_network_close(near);
     if (s == OK) {
         s = announce(&r, &table);
         unknown_table_free(&table);

@@ -80,6 +80,7 @@ static status see_subset(const evaluation *e, const merlin_capture *from, int su
     merlin_maps maps = {0};
     merlin_params params = merlin_params_default();
     params.stop = e->options->stopped;
+    params.near_network = e->nfps;
     status result = subset_new(from, subset, count_pictures(e->options), &some);
     if (result != OK) return result;
     pst_capture_forget_lights(&some);

@@ -64,6 +64,7 @@ static status solve(const run *r, const merlin_capture *c, unknown_way way, solu
     merlin_params params = merlin_params_default();
     params.views = r->options->views;
     params.stop = r->options->stopped;
+    params.near_network = r->options->near;
     if (way == UNKNOWN_UNCALIBRATED) {
         const merlin_stereo_params how = {.method = MERLIN_STEREO_UNCALIBRATED, .stop = r->options->stopped};
         merlin_surface found;

@@ -15,6 +15,7 @@
 #include <stdio.h>
 
 #include "base/status.h"
+#include "merlin/stereo.h"
 
 typedef enum unknown_way { UNKNOWN_NETWORK, UNKNOWN_REFINED, UNKNOWN_UNCALIBRATED, UNKNOWN_WAYS } unknown_way;
 
@@ -39,10 +40,11 @@ typedef struct unknown_table {
 } unknown_table;
 
 typedef struct unknown_options {
-    const char *data, *weights; /* data NULL: objects are rendered under UNKNOWN_LIGHTS distant lights */
-    const char *several;        /* weights that see the pictures together; NULL: `weights` see them one by one */
-    uint64_t seed;              /* of rendered objects */
-    size_t count;               /* objects at most; 0: all, or UNKNOWN_RENDERED */
+    const char *data, *weights;      /* data NULL: objects are rendered under UNKNOWN_LIGHTS distant lights */
+    const char *several;             /* weights that see the pictures together; NULL: `weights` see them one by one */
+    const merlin_near_network *near; /* NULL: without */
+    uint64_t seed;                   /* of rendered objects */
+    size_t count;                    /* objects at most; 0: all, or UNKNOWN_RENDERED */
     int views;
     bool quiet;
     int (*stopped)(void); /* asked between solutions; NULL: never */
