@@ -100,7 +100,31 @@ static void what_moved_too_far_is_refused(void **state)
     assert_int_equal(align_pictures(&c, &aligned, &shifts), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "the object is about 13 pixels aside"));
     assert_null(aligned.picture);
+    c.count = 2;
+    move(&c, 1, 12, -9);
+    assert_int_equal(align_pictures(&c, &aligned, &shifts), MERLIN_BAD_INPUT);
+    c.count = LIGHTS;
     capture_drop(&c);
+}
+
+/* What is lit lies in different places of two pictures, which may be alike by chance if one is moved. */
+static void two_pictures_under_far_lights_did_not_move(void **state)
+{
+    (void)state;
+    const relief bumps = {.size = SIZE, .lights = 24, .channels = 1, .bump = 8, .exposure = 1.5f, .cast_shadows = true};
+    merlin_capture all, aligned;
+    picture_shifts shifts;
+    relief_capture(&bumps, &all);
+    for (int a = 0; a < 10; a++)
+        for (int b = 0; b < a; b++) {
+            merlin_capture two = all;
+            uint16_t *pair[] = {all.picture[a], all.picture[b]};
+            two.count = 2;
+            two.picture = pair;
+            if (align_pictures(&two, &aligned, &shifts) != OK) fail_msg("%d and %d: %s", a, b, status_message());
+            align_pictures_free(&two, &aligned);
+        }
+    capture_drop(&all);
 }
 
 static void one_picture_has_nothing_to_fit(void **state)
@@ -124,6 +148,7 @@ int main(void)
         cmocka_unit_test(still_pictures_stay),
         cmocka_unit_test(what_moved_comes_back),
         cmocka_unit_test(what_moved_too_far_is_refused),
+        cmocka_unit_test(two_pictures_under_far_lights_did_not_move),
         cmocka_unit_test(one_picture_has_nothing_to_fit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
