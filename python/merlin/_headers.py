@@ -83,8 +83,7 @@ Hint = _struct("hint", [("point_count", c_int), ("point", Point * MOST_POINTS), 
 LEAST_SIZE, LARGEST_SIZE, SIZE_STEP = 64, 512, 32
 Params = _struct("params", [
     ("size", c_int), ("views", c_int), ("auto_exposure", c_int), ("exposure", c_float), *_WATCH, ("shot", Shot),
-    ("flash", c_int), ("fov", c_float), ("hint", Hint), ("near_network", c_void_p),
-    ("last", c_int)])
+    ("flash", c_int), ("fov", c_float), ("hint", Hint), ("near_network", c_void_p), ("last", c_int)])
 Object = _struct("object", [("mask", Image), ("source", c_int), ("confidence", c_float), ("seconds", c_double)])
 
 # ---- photos.h ----
@@ -152,7 +151,8 @@ StereoSeconds = _struct("surface.seconds", [
 SURFACE_NAMES = ("normal", "albedo", "depth", "residual", "spread", "mask")
 Surface = _struct("surface", [(name, Image) for name in SURFACE_NAMES] + [
     ("camera", Camera), ("method", c_int), ("by_network", c_int), ("lights", POINTER(Light)), ("light_count", c_int),
-    ("lights_near", c_int), ("strengths_unsure", c_int), ("distance_unsure", c_int), ("lights_unsure", c_int), ("warnings", Warnings),
+    ("lights_near", c_int),
+    ("strengths_unsure", c_int), ("distance_unsure", c_int), ("lights_unsure", c_int), ("warnings", Warnings),
     ("keep_edges", c_int), ("picture_count", c_int), ("picture_names", POINTER(c_char_p)), ("lights_in_order", c_int),
     ("skipped", SkippedFiles), ("normal_error", Statistics), ("seconds", StereoSeconds), ("relit", RelitPhoto)])
 

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "nfps/nfps_stereo.h"
+#include "stereo/fit/problem.h"
 #include "stereo/methods/solve.h"
 
 /* Numbers of pictures from which on the network's surface is the better one, and lights are not found better again;
@@ -13,8 +14,8 @@
  * that were found take their place, so that they can move (docs/notes/several_photographs.md). */
 enum { FEWEST = 3, PLENTY = 24 };
 static const float share = 0.6f, doubt = 0.1f;
-/* Sides up to which the network sees pictures whose lights are searched for, on a coarse grid, and for a beginning. */
-enum { COARSE = 256, BEGINNING = 256 };
+/* Side up to which the network sees pictures whose lights are searched for, on a coarse grid, and for a beginning. */
+enum { COARSE = 256 };
 
 /* The capture under the lights that were found. */
 static merlin_capture lit_capture(const near_refinement *n, const merlin_surface *found)
@@ -41,7 +42,7 @@ static void replace(merlin_surface *found, merlin_surface *by)
     *by = (merlin_surface){0};
 }
 
-/* Where the lights are from the object's middle: directions, and inverse distances, as pst_expected has them. */
+/* Lists the lights' directions and inverse distances from the object's middle, as pst_expected has them. */
 static void list_lights(const merlin_capture *c, vec3 *way, float *near)
 {
     const float distance = c->camera.distance;
@@ -110,7 +111,7 @@ static status take_network(const near_refinement *n, merlin_surface *found)
 
 static status begin(const void *network, const merlin_capture *c, const watch *w, img *normal, img *depth)
 {
-    return nfps_stereo(network, c, &(nfps_options){.largest = BEGINNING, .watch = w}, normal, depth);
+    return nfps_stereo(network, c, &(nfps_options){.largest = COARSE, .watch = w}, normal, depth);
 }
 
 /* Solves under the lights that were found, beginning with the network's surface. */

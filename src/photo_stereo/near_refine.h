@@ -3,19 +3,17 @@
  * near lights (nfps/) makes a better one under these lights, from which they are found again.
  *
  *     status s = pst_solve_expecting(&capture, &how, &expected, &surface);
- *     if (s == OK) s = near_refine(&(near_refinement){network, &capture, &expected, stop}, &surface); */
+ *     if (s == OK) s = near_refine(&(near_refinement){network, &capture, stop}, &surface); */
 #ifndef MERLIN_PHOTO_STEREO_NEAR_REFINE_H
 #define MERLIN_PHOTO_STEREO_NEAR_REFINE_H
 
 #include "nfps/nfps_network.h"
-#include "stereo/fit/problem.h"
 #include "stereo/integrate/stereo_surface.h"
 
 typedef struct near_refinement {
     const nfps_network *network;
     const merlin_capture *capture; /* with a mask; its lights are unknown */
-    const pst_expected *expected;
-    int (*stop)(void); /* may be NULL */
+    int (*stop)(void);             /* may be NULL */
 } near_refinement;
 
 /* Changes the surface of a capture of 3 pictures or more that has near lights: its normals to a mean with those that

@@ -134,7 +134,7 @@ static status solve(const prior_stereo *p, const expectation *e, merlin_surface 
     status s = pst_solve_expecting(
         &c, &(merlin_stereo_params){.method = MERLIN_STEREO_UNCALIBRATED, .unchecked = 1, .stop = p->stop}, &expected,
         out);
-    return s == OK ? near_refine(&(near_refinement){p->near, &c, &expected, p->stop}, out) : s;
+    return s == OK ? near_refine(&(near_refinement){p->near, &c, p->stop}, out) : s;
 }
 
 status prior_stereo_refine(const prior_stereo *p, merlin_maps *maps)

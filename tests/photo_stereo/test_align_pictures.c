@@ -107,7 +107,7 @@ static void what_moved_too_far_is_refused(void **state)
     capture_drop(&c);
 }
 
-/* What is lit lies in different places of two pictures, which may be alike by chance if one is moved. */
+/* Two pictures are lit in different places, which may be alike by chance if one is moved. */
 static void two_pictures_under_far_lights_did_not_move(void **state)
 {
     (void)state;

@@ -110,41 +110,13 @@ static vec3 torch(int i)
     return vec3_make(aside * cosf(turn), aside * sinf(turn), -0.2f);
 }
 
-/* A network's possible estimate of the ball: flatter by a factor, lights off by some eight degrees, distances by a
- * tenth.
- */
-typedef struct ball_expectation {
-    img normal, depth;
-    vec3 light[FEW];
-    float near[FEW];
-} ball_expectation;
-
-static void expect_ball(const merlin_capture *c, float flatter, ball_expectation *out)
-{
-    rng r = rng_at(12, 0, 0);
-    assert_int_equal(img_copy(&out->normal, &c->normal_true), OK);
-    assert_int_equal(img_copy(&out->depth, &c->depth_true), OK);
-    for (int i = 0; i < BALL_SIZE * BALL_SIZE; i++) {
-        float *n = out->normal.data + 3 * i;
-        if (c->mask.data[i] == 0) continue;
-        vec3_put(vec3_normalize(vec3_make(n[0] * flatter, n[1] * flatter, n[2])), n);
-        out->depth.data[i] = 1 + flatter * (out->depth.data[i] - 1);
-    }
-    for (int k = 0; k < FEW; k++) {
-        const vec3 way = vec3_sub(torch(k), vec3_make(0, 0, -1)), to = vec3_normalize(way);
-        const vec3 off = vec3_make(rng_range(&r, -0.15f, 0.15f), rng_range(&r, -0.15f, 0.15f), 0);
-        out->light[k] = vec3_scale(vec3_normalize(vec3_add(to, off)), 0.9f);
-        out->near[k] = (k % 2 ? 1.1f : 0.9f) / vec3_length(way);
-    }
-}
-
 /* Photographs the ball, and makes what is expected of it. */
 static void ball_under_torches(merlin_capture *c, ball_expectation *e)
 {
     const float distance = ball_capture(c, FEW, torch, 0, 0);
     c->camera.distance = distance;
     c->lighting = MERLIN_UNKNOWN_LIGHTS;
-    expect_ball(c, 0.6f, e);
+    ball_expect(c, torch, 0.6f, e);
 }
 
 /* A surface that is too flat, and four pictures, of which it alone explains none. */

@@ -3,6 +3,7 @@
 #ifndef MERLIN_TESTS_STEREO_BALL_H
 #define MERLIN_TESTS_STEREO_BALL_H
 
+#include "base/rng.h"
 #include "relief.h"
 
 /* Enough pixels to be searched small. */
@@ -52,6 +53,35 @@ static inline float ball_capture(merlin_capture *c, int lights, vec3 (*position)
         count += c->mask.data[i];
     }
     return (float)(sum / count);
+}
+
+/* A network's possible estimate of the ball. */
+enum { BALL_MOST_LIGHTS = 16 };
+typedef struct ball_expectation {
+    img normal, depth;
+    vec3 light[BALL_MOST_LIGHTS];
+    float near[BALL_MOST_LIGHTS];
+} ball_expectation;
+
+/* Makes one that is flatter by a factor, lights off by some eight degrees, distances by a tenth. */
+static inline void ball_expect(const merlin_capture *c, vec3 (*position)(int), float flatter, ball_expectation *out)
+{
+    rng r = rng_at(12, 0, 0);
+    assert_true(c->count <= BALL_MOST_LIGHTS);
+    assert_int_equal(img_copy(&out->normal, &c->normal_true), OK);
+    assert_int_equal(img_copy(&out->depth, &c->depth_true), OK);
+    for (int i = 0; i < BALL_SIZE * BALL_SIZE; i++) {
+        float *n = out->normal.data + 3 * i;
+        if (c->mask.data[i] == 0) continue;
+        vec3_put(vec3_normalize(vec3_make(n[0] * flatter, n[1] * flatter, n[2])), n);
+        out->depth.data[i] = 1 + flatter * (out->depth.data[i] - 1);
+    }
+    for (int k = 0; k < c->count; k++) {
+        const vec3 way = vec3_sub(position(k), vec3_make(0, 0, -1)), to = vec3_normalize(way);
+        const vec3 off = vec3_make(rng_range(&r, -0.15f, 0.15f), rng_range(&r, -0.15f, 0.15f), 0);
+        out->light[k] = vec3_scale(vec3_normalize(vec3_add(to, off)), 0.9f);
+        out->near[k] = (k % 2 ? 1.1f : 0.9f) / vec3_length(way);
+    }
 }
 
 #endif
