@@ -26,4 +26,19 @@ static inline pinhole pinhole_of(int width, int height, float field_of_view)
                      .y = 0.5f * (float)height};
 }
 
+/* Returns the focal length in pixels of a picture by the one in mm that gives the same diagonal angle of view on
+ * 36 × 24 mm, as EXIF states it; of 0 it is 0. */
+static inline float pinhole_focal_of_35mm(int width, int height, float focal_35mm)
+{
+    static const float DIAGONAL_35MM = 43.2666f;
+    return focal_35mm / DIAGONAL_35MM * hypotf((float)width, (float)height);
+}
+
+/* Returns the camera of a picture by its 35 mm equivalent focal length, with the axis through its middle. */
+static inline pinhole pinhole_of_35mm(int width, int height, float focal_35mm)
+{
+    return (pinhole){
+        .focal = pinhole_focal_of_35mm(width, height, focal_35mm), .x = 0.5f * (float)width, .y = 0.5f * (float)height};
+}
+
 #endif

@@ -126,10 +126,24 @@ static status find_object(const seen *s, const img *first, const merlin_hint *hi
 
 /* ---- the maps ---- */
 
+/* Gives the capture the lens that the caller, else EXIF knows, if it has none: by their lens pictures tell whether
+ * their lights are near. */
+static void find_lens(const merlin_params *params, merlin_capture *c)
+{
+    const float focal_35mm = params->shot.focal_35mm > 0 ? params->shot.focal_35mm : c->focal_35mm;
+    const float distance = c->camera.distance;
+    if (pinhole_is_near(&c->camera)) return;
+    if (params->fov > 0)
+        c->camera = pinhole_of(c->width, c->height, params->fov);
+    else if (focal_35mm > 0)
+        c->camera = pinhole_of_35mm(c->width, c->height, focal_35mm);
+    c->camera.distance = distance;
+}
+
 /* Returns the horizontal field of view, degrees; 0: unknown. */
 static float field_of_view(const merlin_capture *c)
 {
-    if (!pinhole_is_near(&c->camera)) return c->field_of_view;
+    if (!pinhole_is_near(&c->camera)) return 0;
     return 2 * atanf(0.5f * (float)c->width / c->camera.focal) / (float)DEGREE;
 }
 
@@ -146,7 +160,6 @@ static status estimate(merlin_model *model, seen *s, const merlin_params *params
     while (p.views > 1 && p.views * s->count > RUNS)
         p.views--;
     if (!(p.fov > 0)) p.fov = field_of_view(s->capture);
-    if (!(p.shot.focal_35mm > 0)) p.shot.focal_35mm = s->capture->focal_35mm;
     status st = photograph(s, 0, &first);
     if (st == OK) st = find_object(s, &first, &p.hint, &object);
     if (st == OK) st = estimate_several(model, &first, &object, &p, &further, maps);
@@ -281,6 +294,7 @@ status maps_of_capture(merlin_model *model, const merlin_capture *capture, const
     status s = check(capture);
     if (s != OK) return s;
     s = align_pictures(capture, &aligned, &shifts);
+    if (s == OK) find_lens(params, &aligned);
     if (s == OK) s = maps_of_aligned(model, &aligned, params, refined, maps);
     if (s == OK) s = note_pictures(capture, &shifts, maps);
     align_pictures_free(capture, &aligned);

@@ -134,6 +134,25 @@ static void the_sensors_size_serves_where_35_mm_are_not_said(void **state)
     assert_int_equal(facts_of(&b).flash, EXIF_FLASH_UNKNOWN);
 }
 
+static void a_crop_has_another_lens(void **state)
+{
+    (void)state;
+    const entry stated[] = {{40962, LONG, 4032, 0}, {40963, LONG, 3024, 0}, {41989, SHORT, 26, 0}};
+    bytes known = exif_of(true, stated, 3), unknown = exif_of(true, phone, 3);
+    const exif_facts sized = facts_of(&known), plain = facts_of(&unknown);
+    static const int whole[][2] = {{4032, 3024}, {3024, 4032}, {1000, 750}, {333, 250}};
+    static const int crops[][2] = {{3024, 3024}, {4032, 2268}, {1200, 1000}, {4032, 1000}};
+    for (int i = 0; i < 4; i++) {
+        assert_float_equal(exif_focal_35mm(&sized, whole[i][0], whole[i][1]), 26, 1e-6);
+        assert_float_equal(exif_focal_35mm(&plain, whole[i][0], whole[i][1]), 26, 1e-6);
+        assert_true(exif_focal_35mm(&sized, crops[i][0], crops[i][1]) == 0);
+    }
+    assert_float_equal(exif_focal_35mm(&plain, 4032, 2268), 26, 1e-6); /* a camera's shape, for all that is known */
+    assert_float_equal(exif_focal_35mm(&plain, 4928, 3264), 26, 1e-6);
+    assert_true(exif_focal_35mm(&plain, 1200, 1000) == 0);
+    assert_float_equal(exif_focal_35mm(&plain, 0, 0), 26, 1e-6); /* a size that is not known */
+}
+
 static void what_is_absurd_or_damaged_is_unknown(void **state)
 {
     (void)state;
@@ -373,6 +392,7 @@ int main(void)
         cmocka_unit_test(flash_focal_length_and_orientation_are_read),
         cmocka_unit_test(a_flash_that_did_not_fire_is_none),
         cmocka_unit_test(the_sensors_size_serves_where_35_mm_are_not_said),
+        cmocka_unit_test(a_crop_has_another_lens),
         cmocka_unit_test(what_is_absurd_or_damaged_is_unknown),
         cmocka_unit_test(every_kind_of_file_keeps_it_where_it_is_found),
         cmocka_unit_test(what_has_none_says_nothing),

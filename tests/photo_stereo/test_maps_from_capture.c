@@ -88,6 +88,35 @@ static void files_are_heeded(void **state)
     capture_drop(&c);
 }
 
+/* A square picture with a diagonal of 43.3 mm is 34 degrees wide, seen from 50 mm away. */
+static void the_lens_of_exif_is_as_good_as_a_known_one(void **state)
+{
+    const fixture *f = *state;
+    enum { PICTURES = 8 };
+    const double wide = 2 * atan(0.5 * 43.2666 / sqrt(2) / 50) * 180 / 3.14159265358979;
+    merlin_params p = quick();
+    merlin_maps by_exif, by_params, by_camera;
+    merlin_capture c;
+    picture_sphere(PICTURES, 1, &c);
+    c.focal_35mm = 50;
+    if (merlin_maps_from_capture(f->any, &c, &p, &by_exif) != MERLIN_OK) fail_msg("%s", merlin_error());
+    c.focal_35mm = 0;
+    p.fov = (float)wide;
+    if (merlin_maps_from_capture(f->any, &c, &p, &by_params) != MERLIN_OK) fail_msg("%s", merlin_error());
+    p.fov = 0;
+    pst_capture_see(&c, (float)wide, 0);
+    if (merlin_maps_from_capture(f->any, &c, &p, &by_camera) != MERLIN_OK) fail_msg("%s", merlin_error());
+    assert_float_equal(by_exif.fov, wide, 1e-3);
+    for (int i = 0; i < 3 * SIZE * SIZE; i++) {
+        assert_float_equal(by_params.normal.data[i], by_camera.normal.data[i], 1e-3);
+        assert_float_equal(by_exif.normal.data[i], by_camera.normal.data[i], 1e-3);
+    }
+    merlin_maps_free(&by_exif);
+    merlin_maps_free(&by_params);
+    merlin_maps_free(&by_camera);
+    capture_drop(&c);
+}
+
 static void few_pictures_are_the_networks_alone(void **state)
 {
     const fixture *f = *state;
@@ -246,6 +275,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(files_are_heeded),
+        cmocka_unit_test(the_lens_of_exif_is_as_good_as_a_known_one),
         cmocka_unit_test(few_pictures_are_the_networks_alone),
         cmocka_unit_test(one_picture_is_a_photograph),
         cmocka_unit_test(the_spread_is_kept),

@@ -194,6 +194,24 @@ static void near_lights_have_positions_and_a_camera(void **state)
     assert_refused(&options, "lists directions");
 }
 
+/* A lens whose focal length is the diagonal's length. */
+static void before_near_lights_the_lens_of_exif_is_taken(void **state)
+{
+    (void)state;
+    merlin_capture near = {.width = 6, .height = 4, .lighting = MERLIN_NEAR_LIGHTS, .focal_35mm = 43.2666f};
+    merlin_capture distant = near;
+    pst_capture_see(&near, 0, 2);
+    assert_float_equal(near.camera.focal, sqrt(52), 1e-4);
+    assert_float_equal(near.camera.x, 3, 0);
+    assert_float_equal(near.camera.distance, 2, 0);
+    pst_capture_see(&near, 90, 0); /* that of the caller goes before it */
+    assert_float_equal(near.camera.focal, 3, 1e-5);
+    assert_float_equal(near.camera.distance, 2, 0);
+    distant.lighting = MERLIN_DISTANT_LIGHTS;
+    pst_capture_see(&distant, 0, 0); /* depth stays in pixels */
+    assert_false(pinhole_is_near(&distant.camera));
+}
+
 static void near_lights_of_an_lp_file_are_where_it_says(void **state)
 {
     (void)state;
@@ -368,6 +386,7 @@ int main(void)
         in_scratch(an_lp_file_says_which_picture_has_which_light),
         in_scratch(a_dome_s_lights_go_to_other_pictures_in_their_order),
         in_scratch(near_lights_have_positions_and_a_camera),
+        cmocka_unit_test(before_near_lights_the_lens_of_exif_is_taken),
         in_scratch(near_lights_of_an_lp_file_are_where_it_says),
         in_scratch(near_lights_of_an_lp_file_before_the_object_are_about_it),
         in_scratch(a_field_of_view_makes_a_camera_without_lights),

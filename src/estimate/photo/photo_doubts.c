@@ -342,7 +342,7 @@ merlin_status merlin_shot_read(const char *path, merlin_shot *out)
     if (s == OK) s = img_look(path, &file);
     if (s != OK) return s;
     *out = (merlin_shot){.flash = (merlin_flash)facts.flash,
-                         .focal_35mm = facts.focal_35mm,
+                         .focal_35mm = exif_focal_35mm(&facts, file.width, file.height),
                          .reduced = file.reduced,
                          .frames = file.frames};
     return MERLIN_OK;

@@ -4,8 +4,8 @@
 #include <math.h>
 
 #include "estimate/surface/surface.h"
+#include "optics/pinhole.h"
 
-static const double DIAGONAL_35MM = 43.2666;
 /* Limits of a crop's field of view in degrees; others come from wrong numbers. */
 static const float NARROWEST = 1, WIDEST = 130;
 
@@ -13,7 +13,7 @@ static const float NARROWEST = 1, WIDEST = 130;
 static double focal_pixels(float fov, float focal_35mm, int width, int height)
 {
     if (fov > 0) return width / (2 * (double)camera_tangent(fov));
-    return focal_35mm > 0 ? (double)focal_35mm / DIAGONAL_35MM * hypot(width, height) : 0;
+    return (double)pinhole_focal_of_35mm(width, height, focal_35mm);
 }
 
 sight sight_of(float fov, float focal_35mm, int width, int height, crop_square crop)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "image/metadata/exif.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -68,6 +69,12 @@ exif_colours exif_colours_of(const tiff_head *t, uint64_t page)
     return space == SRGB ? EXIF_COLOURS_SRGB : EXIF_COLOURS_UNKNOWN;
 }
 
+static int pixels(const tiff_head *t, unsigned tag)
+{
+    const double count = number(t, tag);
+    return count >= 1 && count < INT_MAX ? (int)count : 0;
+}
+
 static void take_facts(const tiff_head *t, exif_facts *out)
 {
     uint32_t orientation = tiff_value(t, t->page[0], TIFF_ORIENTATION);
@@ -81,6 +88,8 @@ static void take_facts(const tiff_head *t, exif_facts *out)
     double focal = number(t, FOCAL_LENGTH_35MM);
     if (!(focal >= SHORTEST)) focal = focal_by_sensor(t);
     if (focal >= SHORTEST && focal <= LONGEST) out->focal_35mm = (float)focal;
+    out->wide = pixels(t, PIXELS_WIDE);
+    out->high = pixels(t, PIXELS_HIGH);
 }
 
 void exif_parse_part(const byte_source *whole, uint64_t at, uint64_t size, exif_facts *out)
@@ -126,4 +135,26 @@ status exif_read(const char *path, exif_facts *out)
         s = parse_text(&file, out);
     byte_source_close(&file);
     return s;
+}
+
+static double shape(int width, int height)
+{
+    return width > height ? (double)width / height : (double)height / width;
+}
+
+static bool are_alike(double a, double b)
+{
+    static const double tolerance = 0.012; /* cameras write 3:2 as 1.494 to 1.51 */
+    return fabs(a / b - 1) <= tolerance;
+}
+
+float exif_focal_35mm(const exif_facts *facts, int width, int height)
+{
+    static const double usual[] = {1, 5.0 / 4, 4.0 / 3, 3.0 / 2, 16.0 / 9, 2, 19.5 / 9, 20.0 / 9};
+    if (width < 1 || height < 1) return facts->focal_35mm;
+    const double seen = shape(width, height);
+    if (facts->wide && facts->high && !are_alike(seen, shape(facts->wide, facts->high))) return 0;
+    for (size_t i = 0; i < sizeof usual / sizeof *usual; i++)
+        if (are_alike(seen, usual[i])) return facts->focal_35mm;
+    return 0;
 }

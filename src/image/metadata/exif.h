@@ -26,6 +26,7 @@ typedef struct exif_facts {
     exif_flash flash;
     exif_colours colours;
     float focal_35mm; /* focal length in mm with the same diagonal field of view on 36 × 24 mm; 0: unknown */
+    int wide, high;   /* pixels of the picture that the camera wrote; 0: unknown */
 } exif_facts;
 
 /* Reads the facts from a picture's EXIF: a TIFF header, perhaps after "Exif" and two zeros. */
@@ -34,6 +35,10 @@ void exif_parse(const void *exif, size_t size, exif_facts *out);
 void exif_parse_part(const byte_source *whole, uint64_t at, uint64_t size, exif_facts *out);
 /* Reads the facts from a picture's file, of any kind. Fails with MERLIN_NO_MEMORY only. */
 status exif_read(const char *path, exif_facts *out);
+
+/* Returns focal_35mm, or 0 if a picture of width × height pixels, either way up, is a crop of what the camera wrote:
+ * programs that crop leave the focal length as it was. A crop has another shape than that, or than cameras write. */
+float exif_focal_35mm(const exif_facts *facts, int width, int height);
 
 /* Reads the colour space of an EXIF page; page 0: there is none. */
 exif_colours exif_colours_of(const tiff_head *t, uint64_t page);

@@ -88,12 +88,14 @@ status img_look(const char *path, img_facts *out)
 {
     picture_kind kind;
     picture_head head = {.width = 0};
-    *out = (img_facts){1, 1};
+    *out = (img_facts){.reduced = 1, .frames = 1};
     status s = look_at(path, &kind);
     if (s == OK) s = look_into(path, kind, &head);
     if (s != OK) return s == MERLIN_NO_MEMORY ? s : OK;
     out->reduced = picture_reduction(head.width, head.height);
     if (head.frames > 1) out->frames = head.frames;
+    out->width = head.width;
+    out->height = head.height;
     return OK;
 }
 

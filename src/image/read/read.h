@@ -28,12 +28,12 @@ status img_read(const char *path, img *color, img *alpha);
  * and height may be exchanged. */
 status img_read_size(const char *path, int *width, int *height);
 typedef struct img_facts {
-    int reduced; /* number of its pixels a side that are averaged into one: 1 for most */
-    int frames;  /* number of pictures in the file, of which the first is read: 1 for most */
+    int reduced;       /* number of its pixels a side that are averaged into one: 1 for most */
+    int frames;        /* number of pictures in the file, of which the first is read: 1 for most */
+    int width, height; /* before an orientation is applied; 0: unknown */
 } img_facts;
-/* Finds what a file's header says about reading it; 1 and 1 for files that are refused. Fails with MERLIN_NO_MEMORY
- * only.
- */
+/* Finds what a file's header says about reading it; 1, 1 and unknown for files that are refused. Fails with
+ * MERLIN_NO_MEMORY only. */
 status img_look(const char *path, img_facts *out);
 /* Reads an environment, a latitude-longitude picture: twice as wide as high and at least 8×4 pixels. Pictures of mirror
  * balls and cubes, which would be distorted, are refused. */

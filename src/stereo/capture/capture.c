@@ -95,9 +95,13 @@ void pst_capture_forget_lights(merlin_capture *c)
 
 void pst_capture_see(merlin_capture *c, float field_of_view, float distance)
 {
-    bool near = c->lighting == MERLIN_NEAR_LIGHTS && !(c->camera.focal > 0);
-    float degrees = field_of_view > 0 ? field_of_view : near ? CAMERA_FOV : 0;
+    const bool wanted = c->lighting == MERLIN_NEAR_LIGHTS && !pinhole_is_near(&c->camera);
     if (!(distance > 0)) distance = c->camera.distance;
-    if (degrees > 0) c->camera = pinhole_of(c->width, c->height, degrees);
+    if (field_of_view > 0)
+        c->camera = pinhole_of(c->width, c->height, field_of_view);
+    else if (wanted && c->focal_35mm > 0)
+        c->camera = pinhole_of_35mm(c->width, c->height, c->focal_35mm);
+    else if (wanted)
+        c->camera = pinhole_of(c->width, c->height, CAMERA_FOV);
     c->camera.distance = distance;
 }

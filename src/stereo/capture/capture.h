@@ -75,7 +75,8 @@ status pst_capture_find_mask(merlin_capture *c);
 void pst_capture_free(merlin_capture *c);
 
 /* Sets the camera by its horizontal field of view in degrees and its mean distance from the object. 0: unknown, which
- * leaves the present value; with near lights a camera without a field of view gets the default of 60 degrees. */
+ * leaves the present value; with near lights a camera without a field of view gets the one of the first picture's EXIF,
+ * else the default of 60 degrees. */
 void pst_capture_see(merlin_capture *c, float field_of_view, float distance);
 /* Makes the lights unknown, except for their intensities, which are measured separately. */
 void pst_capture_forget_lights(merlin_capture *c);

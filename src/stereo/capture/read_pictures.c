@@ -54,11 +54,11 @@ static const char *told(const reading *r, const char *name, char text[PATH_MAX])
 static status inspect_first(const reading *r, merlin_capture *c)
 {
     char *path = path_of(r, c->name[0]);
-    img_facts facts = {1, 1};
+    img_facts facts = {.reduced = 1, .frames = 1};
     exif_facts shot = {0};
     status s = path ? img_look(path, &facts) : fail(MERLIN_NO_MEMORY, "no memory for a file name");
     if (s == OK) s = exif_read(path, &shot);
-    c->focal_35mm = shot.focal_35mm;
+    c->focal_35mm = exif_focal_35mm(&shot, facts.width, facts.height);
     c->reduced = facts.reduced;
     c->frames = facts.frames;
     free(path);

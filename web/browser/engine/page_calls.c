@@ -88,14 +88,14 @@ int page_open(const char *any, const char *flash)
 
 /* ---- photograph and mask ---- */
 
-static void read_shot(const uint8_t *file, size_t size)
+static void read_shot(const uint8_t *file, size_t size, int width, int height)
 {
     byte_source bytes;
     exif_place place;
     exif_facts facts = {0};
     byte_source_of_memory(&bytes, file, size);
     if (exif_find(&bytes, &place)) exif_parse_part(&bytes, place.at, place.size, &facts);
-    page.shot = (merlin_shot){.focal_35mm = facts.focal_35mm};
+    page.shot = (merlin_shot){.focal_35mm = exif_focal_35mm(&facts, width, height)};
     if (facts.flash == EXIF_FLASH_NONE) page.shot.flash = MERLIN_FLASH_NONE;
     if (facts.flash == EXIF_FLASH_FIRED) page.shot.flash = MERLIN_FLASH_FIRED;
 }
@@ -110,7 +110,7 @@ int page_photo(const uint8_t *rgba, int width, int height, const uint8_t *file, 
     merlin_object_free(&page.object);
     img_free(&page.photo);
     img_free(&page.alpha);
-    read_shot(file, size);
+    read_shot(file, size, width, height);
     status s = img_new(&page.photo, width, height, 3);
     if (s == OK) s = img_new(&page.alpha, width, height, 1);
     for (size_t i = 0; s == OK && i < count; i++) {
