@@ -64,7 +64,7 @@ static status solve_expecting(const near_refinement *n, const merlin_surface *fo
     status s = way && near ? OK : fail(MERLIN_NO_MEMORY, "no memory for %d lights", c.count);
     if (s == OK) {
         list_lights(&c, way, near);
-        const pst_expected expected = {normal, depth, way, way, near, doubt};
+        const pst_expected expected = {normal, depth, way, way, near, doubt, true};
         s = pst_solve_expecting(n->capture, &how, &expected, out);
     }
     free(way);

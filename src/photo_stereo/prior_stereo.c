@@ -128,7 +128,7 @@ static void expectation_free(expectation *e)
 static status solve(const prior_stereo *p, const expectation *e, merlin_surface *out)
 {
     merlin_capture c = *p->capture;
-    const pst_expected expected = {&e->normal, e->depth, e->light, e->compared, e->near, 0};
+    const pst_expected expected = {&e->normal, e->depth, e->light, e->compared, e->near, 0, false};
     c.lighting = MERLIN_UNKNOWN_LIGHTS;
     c.mask = e->mask;
     status s = pst_solve_expecting(

@@ -35,7 +35,8 @@ static void photograph(int count, fixture *f)
     f->capture.camera.distance = distance;
     f->capture.lighting = MERLIN_UNKNOWN_LIGHTS;
     ball_expect(&f->capture, torch, 0.6f, &f->guess);
-    f->expected = (pst_expected){&f->guess.normal, &f->guess.depth, f->guess.light, f->guess.light, f->guess.near, 0};
+    f->expected =
+        (pst_expected){&f->guess.normal, &f->guess.depth, f->guess.light, f->guess.light, f->guess.near, 0, false};
 }
 
 static void put_away(fixture *f)

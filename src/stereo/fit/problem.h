@@ -34,6 +34,7 @@ typedef struct pst_expected {
     const vec3 *compared;
     const float *near;
     float doubt_lights; /* share of what is held against near lights that differ from `compared`; 0: all of it */
+    bool near_alone;    /* whether the lights are known to be near: distant ones are not tried */
 } pst_expected;
 
 typedef struct pst_problem {

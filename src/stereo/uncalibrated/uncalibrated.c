@@ -238,11 +238,20 @@ static void decide_as_expected(const pst_problem *p, hypothesis *near, hypothesi
     if (ahead < -plainly && !is_unsure(p, distant, false)) near->cost = HUGE_VAL;
 }
 
+/* Finds near lights where they are known to be of that kind. */
+static status find_near_alone(const pst_problem *p, hypothesis *near, hypothesis *distant)
+{
+    double distance;
+    distant->cost = HUGE_VAL;
+    return find_near(p, p->expected->normal, near, &distance);
+}
+
 /* Finds both kinds of lights; impossible ones have an infinite cost. */
 static status find_both(const pst_problem *p, hypothesis *near, hypothesis *distant)
 {
     img inflated = {0}, height = {0};
     double distance = 0;
+    if (p->expected && p->expected->near_alone) return find_near_alone(p, near, distant);
     status s = pst_inflate(&p->capture->mask, &inflated, &height);
     if (s != OK) return s;
     img_free(&height);
