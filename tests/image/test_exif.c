@@ -153,6 +153,21 @@ static void a_crop_has_another_lens(void **state)
     assert_float_equal(exif_focal_35mm(&plain, 0, 0), 26, 1e-6); /* a size that is not known */
 }
 
+static void the_exposure_is_time_and_sensitivity_by_the_f_number_squared(void **state)
+{
+    (void)state;
+    const entry stated[] = {{33434, RATIONAL, 1, 50}, {33437, RATIONAL, 28, 10}, {34855, SHORT, 400, 0}};
+    const entry unfit[] = {{33434, RATIONAL, 1, 50}, {34855, SHORT, 65535, 0}};
+    bytes b = exif_of(true, stated, 3);
+    assert_float_equal(facts_of(&b).exposure, 400 / 50.0 / (2.8 * 2.8), 1e-5);
+    b = exif_of(false, stated, 1); /* a lens without contacts */
+    assert_float_equal(facts_of(&b).exposure, 0.02, 1e-7);
+    b = exif_of(true, unfit, 2);
+    assert_true(facts_of(&b).exposure == 0);
+    b = exif_of(true, phone, 3);
+    assert_true(facts_of(&b).exposure == 0);
+}
+
 static void what_is_absurd_or_damaged_is_unknown(void **state)
 {
     (void)state;
@@ -393,6 +408,7 @@ int main(void)
         cmocka_unit_test(a_flash_that_did_not_fire_is_none),
         cmocka_unit_test(the_sensors_size_serves_where_35_mm_are_not_said),
         cmocka_unit_test(a_crop_has_another_lens),
+        cmocka_unit_test(the_exposure_is_time_and_sensitivity_by_the_f_number_squared),
         cmocka_unit_test(what_is_absurd_or_damaged_is_unknown),
         cmocka_unit_test(every_kind_of_file_keeps_it_where_it_is_found),
         cmocka_unit_test(what_has_none_says_nothing),

@@ -10,6 +10,9 @@
 #include "image/metadata/exif_text.h"
 
 enum {
+    EXPOSURE_TIME = 33434,
+    F_NUMBER = 33437,
+    SENSITIVITY = 34855,
     FLASH = 37385,
     FOCAL_LENGTH = 37386,
     FOCAL_LENGTH_35MM = 41989,
@@ -75,6 +78,16 @@ static int pixels(const tiff_head *t, unsigned tag)
     return count >= 1 && count < INT_MAX ? (int)count : 0;
 }
 
+/* Returns the exposure. What is not stated, as the f-number of a lens without contacts, is the same in all pictures of
+ * a camera. A sensitivity that does not fit its 16 bits is unknown. */
+static double exposure(const tiff_head *t)
+{
+    enum { UNFIT = 65535 };
+    const double time = number(t, EXPOSURE_TIME), f = number(t, F_NUMBER), iso = number(t, SENSITIVITY);
+    if (!(time > 0) || iso >= UNFIT) return 0;
+    return time * (iso > 0 ? iso : 1) / (f > 0 ? f * f : 1);
+}
+
 static void take_facts(const tiff_head *t, exif_facts *out)
 {
     uint32_t orientation = tiff_value(t, t->page[0], TIFF_ORIENTATION);
@@ -88,6 +101,8 @@ static void take_facts(const tiff_head *t, exif_facts *out)
     double focal = number(t, FOCAL_LENGTH_35MM);
     if (!(focal >= SHORTEST)) focal = focal_by_sensor(t);
     if (focal >= SHORTEST && focal <= LONGEST) out->focal_35mm = (float)focal;
+    const double bright = exposure(t);
+    if (isfinite(bright)) out->exposure = (float)bright;
     out->wide = pixels(t, PIXELS_WIDE);
     out->high = pixels(t, PIXELS_HIGH);
 }

@@ -27,6 +27,7 @@ typedef struct exif_facts {
     exif_colours colours;
     float focal_35mm; /* focal length in mm with the same diagonal field of view on 36 × 24 mm; 0: unknown */
     int wide, high;   /* pixels of the picture that the camera wrote; 0: unknown */
+    float exposure;   /* seconds × sensitivity (ISO) / f-number², to which values are proportional; 0: unknown */
 } exif_facts;
 
 /* Reads the facts from a picture's EXIF: a TIFF header, perhaps after "Exif" and two zeros. */

@@ -154,7 +154,7 @@ static status read_intensities(const char *path, const char *folder, merlin_capt
         s = take_rows(path, &rows, folder, c);
         text_rows_free(&rows);
     }
-    c->intensities_known = s == OK;
+    c->intensities_known = c->intensities_listed = s == OK;
     return s;
 }
 

@@ -110,6 +110,7 @@ static status set_intensities(const char *path, const light_list *list, merlin_c
                         "every light",
                         path, list->line[i]);
         vec3_put(e, c->light[i].intensity);
+        c->intensities_listed = true;
     }
     return OK;
 }

@@ -184,7 +184,7 @@ status pst_read_luces(const char *folder, merlin_capture *c)
     if (s == OK) {
         memcpy(c->light, p.light, (size_t)p.count * sizeof *p.light);
         c->lighting = MERLIN_NEAR_LIGHTS;
-        c->intensities_known = true;
+        c->intensities_known = c->intensities_listed = true;
         c->camera = p.camera;
         c->width = p.width;
         c->height = p.height;

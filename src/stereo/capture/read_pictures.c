@@ -34,6 +34,8 @@ typedef struct reading {
     img *first;           /* first picture, until it is stored */
     int bits;             /* its bits */
     float *brightest;     /* brightest float of every picture */
+    float *exposure;      /* of every picture (exif.h); NULL unless all are known */
+    float ambient_exposure;
     merlin_capture *into;
 } reading;
 
@@ -95,31 +97,38 @@ static status check_shape(const reading *r, const merlin_capture *c, const char 
     return OK;
 }
 
+/* Returns the factor of the ambient picture in picture i, which may have been exposed otherwise. */
+static float ambient_share(const reading *r, int i)
+{
+    return r->exposure && r->ambient_exposure > 0 ? r->exposure[i] / r->ambient_exposure : 1;
+}
+
 /* Counts values below the ambient picture's: as light only adds, clearly lower values show that it is not ambient
  * light. */
 static void compare_with_ambient(const reading *r, int i, const img *picture)
 {
     static const float noise = 0.02f;
+    const float share = ambient_share(r, i);
     ambient_sums sums = {0};
     for (size_t k = 0, n = img_value_count(picture); k < n; k++) {
-        float value = picture->data[k] * r->scale;
-        sums.lit += value > noise || r->ambient.data[k] > noise;
-        sums.below += value < r->ambient.data[k] - noise;
+        float value = picture->data[k] * r->scale, there = share * r->ambient.data[k];
+        sums.lit += value > noise || there > noise;
+        sums.below += value < there - noise;
         sums.other += value != r->ambient.data[k];
     }
     r->beside[i] = sums;
 }
 
-static status store(const reading *r, const img *picture, uint16_t **out)
+static status store(const reading *r, int which, const img *picture, uint16_t **out)
 {
     size_t count = img_value_count(picture);
     uint16_t *codes = malloc(count * sizeof *codes);
     if (!codes)
         return fail(MERLIN_NO_MEMORY, "no memory for a picture of %d x %d pixels", picture->width, picture->height);
     memory_prefer_large_pages(codes, count * sizeof *codes);
-    const float *ambient = r->ambient.data;
+    const float *ambient = r->ambient.data, share = ambient_share(r, which);
     for (size_t i = 0; i < count; i++) {
-        float value = picture->data[i] * r->scale, left = ambient ? value - ambient[i] : value;
+        float value = picture->data[i] * r->scale, left = ambient ? value - share * ambient[i] : value;
         /* keeps values that the sensor clipped recognizable after the subtraction */
         float code = left * 65535 + 0.5f;
         codes[i] = value >= 1 || code >= 65535 ? 65535 : code > 0 ? (uint16_t)code : 0;
@@ -261,6 +270,57 @@ static status check_ambient(const reading *r, merlin_capture *c)
     return OK;
 }
 
+/* ---- exposures ---- */
+
+static status read_exposure(const char *path, float *out)
+{
+    exif_facts shot;
+    status s = path ? exif_read(path, &shot) : fail(MERLIN_NO_MEMORY, "no memory for a file name");
+    *out = s == OK ? shot.exposure : 0;
+    return s;
+}
+
+static status read_exposures(reading *r, const merlin_capture *c)
+{
+    bool all = true;
+    status s = r->ambient_path ? read_exposure(r->ambient_path, &r->ambient_exposure) : OK;
+    r->exposure = calloc((size_t)c->count, sizeof *r->exposure);
+    if (!r->exposure) return fail(MERLIN_NO_MEMORY, "no memory for %d exposures", c->count);
+    for (int i = 0; i < c->count && s == OK && all; i++) {
+        char *path = path_of(r, c->name[i]);
+        s = read_exposure(path, &r->exposure[i]);
+        all = r->exposure[i] > 0;
+        free(path);
+    }
+    if (all) return s;
+    free(r->exposure);
+    r->exposure = NULL;
+    return s;
+}
+
+/* Takes exposures that differ for strengths of the lights: values are divided by either. */
+static void even_out(const reading *r, merlin_capture *c)
+{
+    static const double differ = 1.02, absurd = 1000;
+    double least = HUGE_VAL, most = 0, sum = 0;
+    for (int i = 0; i < c->count && r->exposure; i++) {
+        least = fmin(least, (double)r->exposure[i]);
+        most = fmax(most, (double)r->exposure[i]);
+        sum += (double)r->exposure[i];
+    }
+    if (c->intensities_listed || !(most > differ * least) || most > absurd * least) return;
+    for (int i = 0; i < c->count; i++)
+        for (int ch = 0; ch < 3; ch++)
+            c->light[i].intensity[ch] = (float)((double)r->exposure[i] * c->count / sum);
+    c->intensities_known = true;
+    warnings_add(&c->noticed, "exposures_differ",
+                 "by their EXIF some pictures were exposed up to %.2g times as much as others, which is evened out: a "
+                 "fixed exposure is more exact",
+                 most / least);
+}
+
+/* ---- the whole ---- */
+
 /* Reads a picture; the first one was read already to determine its format. */
 static status get_picture(const reading *r, int i, img *out, int *bits)
 {
@@ -279,7 +339,7 @@ static status take_picture(const reading *r, int i)
     if (s != OK) return s;
     s = check_shape(r, r->into, r->into->name[i], &picture, bits);
     if (s == OK && r->ambient.data) compare_with_ambient(r, i, &picture);
-    if (s == OK) s = store(r, &picture, &r->into->picture[i]);
+    if (s == OK) s = store(r, i, &picture, &r->into->picture[i]);
     img_free(&picture);
     return s;
 }
@@ -293,8 +353,11 @@ status pst_read_pictures(const char *folder, const merlin_capture_files *options
     c->bits = r.bits;
     c->linear = options->linear != 0;
     if (s == OK) s = read_ambient(&r, options->ambient, c);
+    if (s == OK) s = read_exposures(&r, c);
     if (s == OK) s = for_pictures(&r, take_picture);
     if (s == OK && r.ambient.data) s = check_ambient(&r, c);
+    if (s == OK) even_out(&r, c);
+    free(r.exposure);
     img_free(&r.ambient);
     img_free(&first);
     free(r.ambient_path);
