@@ -265,5 +265,5 @@ static status find(const void *context, const merlin_capture *c, const watch *w,
 
 pst_guide nfps_guide(const nfps_network *n)
 {
-    return (pst_guide){n ? find : NULL, n};
+    return (pst_guide){.find = n ? find : NULL, .context = n};
 }

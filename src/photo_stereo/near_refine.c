@@ -64,7 +64,7 @@ static status solve_expecting(const near_refinement *n, const merlin_surface *fo
     status s = way && near ? OK : fail(MERLIN_NO_MEMORY, "no memory for %d lights", c.count);
     if (s == OK) {
         list_lights(&c, way, near);
-        const pst_expected expected = {normal, depth, way, way, near, doubt, true};
+        const pst_expected expected = {normal, depth, way, way, near, doubt, .near_alone = true, .lights_alone = true};
         s = pst_solve_expecting(n->capture, &how, &expected, out);
     }
     free(way);
@@ -119,7 +119,7 @@ static status solve_near(const near_refinement *n, merlin_surface *found)
 {
     const merlin_stereo_params how = {.method = MERLIN_STEREO_NEAR, .unchecked = 1, .stop = n->stop};
     const merlin_capture c = lit_capture(n, found);
-    const pst_guide guide = {begin, n->network};
+    const pst_guide guide = {begin, n->network, true};
     const int unsure = found->lights_unsure;
     merlin_surface solved = {0};
     status s = pst_solve_guided(&c, &how, &guide, &solved);
@@ -135,6 +135,8 @@ status near_refine(const near_refinement *n, merlin_surface *found)
     if (!n->network || !found->lights_near || count < FEWEST) return OK;
     status s = count < PLENTY ? find_again(n, found) : OK;
     if (s != OK || found->lights_unsure) return s;
-    s = count >= PST_FEWEST_UNKNOWN ? solve_near(n, found) : MERLIN_BAD_INPUT;
-    return s == MERLIN_BAD_INPUT ? take_network(n, found) : s;
+    if (count < PST_FEWEST_UNKNOWN) return take_network(n, found);
+    s = solve_near(n, found);
+    if (s == MERLIN_BAD_INPUT) found->lights_unsure = 1;
+    return s == MERLIN_BAD_INPUT ? OK : s;
 }

@@ -17,8 +17,9 @@ typedef struct near_refinement {
 } near_refinement;
 
 /* Changes the surface of a capture of 3 pictures or more that has near lights: its normals to a mean with those that
- * the network finds under them, and from 7 pictures on all of it to what photometric stereo finds that begins there.
- * Others stay as they are. MERLIN_STOPPED, MERLIN_NO_MEMORY. */
+ * the network finds under them, and from 7 pictures on all of it, of which only the lights are used
+ * (pst_expected.lights_alone), to what photometric stereo finds that begins there; where it fails, lights_unsure is
+ * set. Others stay as they are. MERLIN_STOPPED, MERLIN_NO_MEMORY. */
 status near_refine(const near_refinement *n, merlin_surface *found);
 
 #endif

@@ -128,7 +128,12 @@ static void expectation_free(expectation *e)
 static status solve(const prior_stereo *p, const expectation *e, merlin_surface *out)
 {
     merlin_capture c = *p->capture;
-    const pst_expected expected = {&e->normal, e->depth, e->light, e->compared, e->near, 0, false};
+    const pst_expected expected = {.normal = &e->normal,
+                                   .depth = e->depth,
+                                   .light = e->light,
+                                   .compared = e->compared,
+                                   .near = e->near,
+                                   .lights_alone = p->near != NULL};
     c.lighting = MERLIN_UNKNOWN_LIGHTS;
     c.mask = e->mask;
     status s = pst_solve_expecting(

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* merlin_stereo (include/merlin/stereo.h) for those who bring a guide.
  *
- *     status s = pst_stereo_guided(capture, &params, &(pst_guide){find, network}, &surface);
+ *     status s = pst_stereo_guided(capture, &params, &(pst_guide){.find = find, .context = network}, &surface);
  */
 #ifndef MERLIN_STEREO_GUIDED_H
 #define MERLIN_STEREO_GUIDED_H

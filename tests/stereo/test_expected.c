@@ -127,7 +127,8 @@ static void few_pictures_correct_what_is_expected(void **state)
     merlin_surface s;
     ball_expectation e;
     ball_under_torches(&c, &e);
-    const pst_expected expected = {&e.normal, &e.depth, e.light, e.light, e.near, 0};
+    const pst_expected expected = {
+        .normal = &e.normal, .depth = &e.depth, .light = e.light, .compared = e.light, .near = e.near};
     assert_int_equal(pst_solve_expecting(&c, &unknown, &expected, &s), OK);
     const double before = mean_angle(&c, &e.normal), after = mean_angle(&c, &s.normal);
     print_message("four pictures: %.2f degrees, expected %.2f\n", after, before);
@@ -159,7 +160,8 @@ static void few_pictures_of_several_objects_are_unsure(void **state)
             rng r = rng_at(3, (uint64_t)(i / BALL_SIZE / 12 * 100 + i % BALL_SIZE / 12), (uint64_t)k);
             if (rng_uniform(&r) < 0.5f) c.picture[k][i] = (uint16_t)(c.picture[k][i] / 4);
         }
-    const pst_expected expected = {&e.normal, &e.depth, e.light, e.light, e.near, 0};
+    const pst_expected expected = {
+        .normal = &e.normal, .depth = &e.depth, .light = e.light, .compared = e.light, .near = e.near};
     assert_int_equal(pst_solve_expecting(&c, &unknown, &expected, &s), OK);
     assert_true(s.lights_unsure);
     merlin_surface_free(&s);

@@ -237,7 +237,7 @@ static void a_surface_that_is_told_gets_its_albedo(void **state)
     told t = {&c.normal_true, &c.depth_true, mean, 0};
     const merlin_stereo_params params = {.method = MERLIN_STEREO_NFPS};
     assert_int_equal(pst_solve(&c, &params, &s), MERLIN_WRONG_USE);
-    assert_int_equal(pst_solve_guided(&c, &params, &(pst_guide){tell, &t}, &s), OK);
+    assert_int_equal(pst_solve_guided(&c, &params, &(pst_guide){.find = tell, .context = &t}, &s), OK);
     print_message("distance %.3f of %.3f\n", (double)t.distance, (double)mean);
     assert_true(fabsf(t.distance / mean - 1) < 0.03f); /* nobody told it, so the lights do */
     assert_true(mean_angle(&c, &s.normal) < 0.1);
@@ -272,7 +272,8 @@ static void a_guide_who_is_wrong_does_no_harm(void **state)
         normal.data[3 * i + 1] *= -1;
     }
     told t = {&normal, &depth, mean, 0};
-    assert_int_equal(pst_solve_guided(&c, &(merlin_stereo_params){0}, &(pst_guide){tell, &t}, &s), OK);
+    assert_int_equal(pst_solve_guided(&c, &(merlin_stereo_params){0}, &(pst_guide){.find = tell, .context = &t}, &s),
+                     OK);
     assert_int_equal(s.method, MERLIN_STEREO_NEAR);
     assert_true(t.distance == mean);
     assert_true(mean_angle(&c, &s.normal) < 2);

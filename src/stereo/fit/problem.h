@@ -35,6 +35,10 @@ typedef struct pst_expected {
     const float *near;
     float doubt_lights; /* share of what is held against near lights that differ from `compared`; 0: all of it */
     bool near_alone;    /* whether the lights are known to be near: distant ones are not tried */
+    /* whether of 7 pictures or more under near lights before a known lens only these are wanted, and a coarse depth:
+     * normals and albedo stay zero for who solves with them */
+    bool lights_alone;
+    bool normals_alone; /* whether the depth that near lights give may stay coarse */
 } pst_expected;
 
 typedef struct pst_problem {

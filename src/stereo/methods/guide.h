@@ -11,6 +11,7 @@ typedef struct pst_guide {
      * positions, and its camera a focal length and a distance, which is the depth's mean; NULL: there is no guide. */
     status (*find)(const void *context, const merlin_capture *c, const watch *w, img *normal, img *depth);
     const void *context;
+    bool normals_alone; /* pst_expected.normals_alone */
 } pst_guide;
 
 #endif

@@ -35,9 +35,10 @@
  * steps in depth at the end. */
 enum { ITERATIONS = 12, SAMPLE = 192, SMALL = 1500, ANEW = 3, ADMISSIONS = 2, STEPPED = 2, SWEEPS = 2 };
 
-/* ROUNDS: from what is expected; only the last one looks for steps in depth, which takes most of the time. ENOUGH:
- * lights from which on costs tell a wrong surface; far_better: by this factor. */
-enum { ROUNDS = 3, ENOUGH = 8 };
+/* ROUNDS: from what is expected; only the last one looks for steps in depth, which takes most of the time. MEDIUM:
+ * number of pixels that take part, up to four times as many, as a network's surface has no more. ENOUGH: lights from
+ * which on costs tell a wrong surface; far_better: by this factor. */
+enum { ROUNDS = 3, MEDIUM = 60000, ENOUGH = 8 };
 static const double far_better = 0.7;
 
 /* Rounds end when depths change by less than this share of the distance on average. */
@@ -319,15 +320,15 @@ static status job_new(const pst_problem *p, merlin_surface *out, near_job *job)
                                                : fail(MERLIN_NO_MEMORY, "no memory to fit %zu pixels", p->pixel_count);
 }
 
-/* Finds the depth map, the distance and the lobe on the small pictures. */
-static status find_depth_small(near_job *job, const smaller_problem *small)
+/* Finds the depth map, the distance and the lobe on the small pictures, in one of the ways, and enlarges the map. */
+static status find_small(near_job *job, const smaller_problem *small, status (*find)(near_job *job))
 {
     const merlin_capture *c = &small->capture;
     merlin_surface found = {0};
     near_job search = {0};
     status s = img_new(&found.normal, c->width, c->height, 3);
     if (s == OK) s = job_new(&small->problem, &found, &search);
-    if (s == OK) s = find_depth(&search);
+    if (s == OK) s = find(&search);
     if (s == OK) pst_enlarge(&found.depth, &c->mask, &job->problem->capture->mask, small->factor, &job->out->depth);
     job->lobe = search.lobe;
     job->held_at = search.held_at;
@@ -338,7 +339,7 @@ static status find_depth_small(near_job *job, const smaller_problem *small)
     return s;
 }
 
-/* Enlarges the small depth map, and finds the pixels of its steps. */
+/* Finds the pixels of the enlarged map's steps. */
 static status fill_in(near_job *job)
 {
     job->watch = job->problem->effort ? job->problem->effort->watch : NULL;
@@ -397,18 +398,32 @@ static status prefer_expected(const smaller_problem *small, bool *expected)
     return s;
 }
 
+/* Fits all pixels under the depth that fewer have found, beginning with the expected normals again. */
+static status fill_in_expected(near_job *job)
+{
+    const pst_expected *e = job->problem->expected;
+    const pst_field f = whole_field(job);
+    status s = pst_field_given(&f, e->normal);
+    if (s == OK) s = fit_normals(job, false);
+    return s == OK && !e->normals_alone ? place(job, placed, true) : s;
+}
+
 static status solve_expected(near_job *job)
 {
+    smaller_problem medium;
     job->watch = job->problem->effort ? job->problem->effort->watch : NULL;
-    status s = find_from_expected(job);
+    status s = smaller_problem_new(job->problem, MEDIUM, &medium);
+    if (s == OK) s = medium.factor > 1 ? find_small(job, &medium, find_from_expected) : find_from_expected(job);
+    if (s == OK && medium.factor > 1) s = fill_in_expected(job);
     if (s == OK) s = fit_normals(job, false);
+    smaller_problem_free(&medium);
     const pst_field f = whole_field(job);
     return s == OK ? pst_field_store(&f, job->out) : s;
 }
 
 static status solve_searching(near_job *job, const smaller_problem *small)
 {
-    status s = small->factor > 1 ? find_depth_small(job, small) : find_depth(job);
+    status s = small->factor > 1 ? find_small(job, small, find_depth) : find_depth(job);
     if (s == OK && small->factor > 1) s = fill_in(job);
     if (s == OK) s = fit_normals(job, false);
     pst_field f = whole_field(job);

@@ -230,8 +230,8 @@ static status run_guided(pst_problem *p, const pst_guide *guide, const watch *w,
 {
     const bool near = out->method == MERLIN_STEREO_NEAR || out->method == MERLIN_STEREO_NFPS;
     img normal = {0}, depth = {0};
-    const pst_expected found = {.normal = &normal, .depth = &depth};
     if (!guide || !near) return run(p, out);
+    const pst_expected found = {.normal = &normal, .depth = &depth, .normals_alone = guide->normals_alone};
     status s = ask(p, guide, w, &normal, &depth);
     p->expected = &found;
     if (s == OK) s = run(p, out);

@@ -309,6 +309,17 @@ static status solve_as(const pst_problem *p, hypothesis *h, bool camera_known, m
     return s;
 }
 
+/* Stores near lights and the depth that was found with them. */
+static status take_lights(hypothesis *h, merlin_surface *out)
+{
+    out->lights = h->light;
+    out->depth = h->depth;
+    out->lights_near = true;
+    h->light = NULL;
+    h->depth = (img){0};
+    return OK;
+}
+
 static status solve_few(const pst_problem *p, bool camera_known, merlin_surface *out)
 {
     status s = pst_solve_few(p, out);
@@ -352,8 +363,9 @@ status pst_solve_uncalibrated(const pst_problem *p, merlin_surface *out)
     if (s == OK) s = check_not_flat(&q);
     if (s == OK) s = find_by_fewer(&q, &near, &distant);
     if (s == OK) {
-        bool are_near = near.cost < clearly * distant.cost;
-        s = solve_as(&q, are_near ? &near : &distant, camera_known, out);
+        const bool are_near = near.cost < clearly * distant.cost;
+        const bool alone = are_near && camera_known && p->expected && p->expected->lights_alone;
+        s = alone ? take_lights(&near, out) : solve_as(&q, are_near ? &near : &distant, camera_known, out);
         if (s == OK) out->lights_unsure = is_unsure(p, are_near ? &near : &distant, are_near);
     }
     free(near.light);
