@@ -28,7 +28,8 @@ typedef struct merlin_calibrate_params {
     const char *mask; /* path of a picture, white on the ball; NULL: the folder's mask.png or similar, else the ball is
                        * searched for */
     int linear;       /* 1: 8-bit pictures are linear, not sRGB */
-    float field_of_view; /* horizontal field of view of the camera in degrees, at most 170; 0: the camera is far away */
+    float field_of_view; /* horizontal field of view of the camera in degrees, at most 170; 0: that of the first
+                          * picture's EXIF, else the camera is far away */
     int (*stop)(void);   /* called between pictures; a nonzero result ends the work with MERLIN_STOPPED; may be NULL */
     merlin_progress progress; /* called for the pictures that are read, with "reading"; may be NULL */
     void *progress_context;

@@ -63,8 +63,8 @@ def calibrate(folder: PathLike, ball: str = "chrome", *, mask: Optional[PathLike
     """Finds the lights by the highlight on a mirror ball ("chrome") or by the shading of a matte one ("matte").
 
     mask: a picture, white on the ball; None: the folder's mask.png or the like, else the ball is searched for. linear:
-    8-bit pictures are linear. field_of_view: of the camera, horizontal, degrees, at most 170; 0: it is far away.
-    Progress and stop: as of Model.estimate."""
+    8-bit pictures are linear. field_of_view: of the camera, horizontal, degrees, at most 170; 0: by EXIF, else it is far
+    away. Progress and stop: as of Model.estimate."""
     name = path_bytes(folder)
     params = h.CalibrateParams(choice(ball, BALLS, "ball"), optional_path(mask), int(linear),
                                real(field_of_view, "field_of_view"))

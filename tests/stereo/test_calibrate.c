@@ -6,6 +6,7 @@
 #include "base/rng.h"
 #include "capture_files.h"
 #include "merlin/calibrate.h"
+#include "png_exif.h"
 #include "stereo/methods/solve.h"
 
 enum { SIZE = 160, LIGHTS = 7 };
@@ -188,6 +189,11 @@ static void a_ball_beside_the_axis_tells_its_lights(void **state)
         /* half a pixel of its radius of 40; 2 to 4 as a circle about the ball's center */
         if (degrees(vec3_of(c.lights[i].direction), light(i)) > 0.7f)
             fail_msg("light %d is off by %.2f degrees", i, (double)degrees(vec3_of(c.lights[i].direction), light(i)));
+    merlin_calibration_free(&c);
+    png_add_exif(scratch_path("00.png"), 0, 33); /* 49.7 degrees wide */
+    assert_int_equal(merlin_calibrate(scratch, &(merlin_calibrate_params){.ball = MERLIN_MATTE_BALL}, &c), OK);
+    for (int i = 0; i < LIGHTS; i++)
+        assert_true(degrees(vec3_of(c.lights[i].direction), light(i)) < 0.9f);
     merlin_calibration_free(&c);
 }
 

@@ -1,76 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Pictures of one object whose camera exposed each as it liked. */
 #include "capture_fixture.h"
-
-/* Appends a number, its highest byte first. */
-static size_t put(unsigned char *at, uint32_t number, size_t size)
-{
-    for (size_t i = 0; i < size; i++)
-        at[i] = (unsigned char)(number >> 8 * (size - 1 - i));
-    return size;
-}
-
-/* The CRC-32 of a PNG's chunks, bit by bit. */
-static uint32_t checksum(const unsigned char *data, size_t size)
-{
-    uint32_t crc = 0xffffffff;
-    for (size_t i = 0; i < size; i++) {
-        crc ^= data[i];
-        for (int bit = 0; bit < 8; bit++)
-            crc = crc >> 1 ^ (crc & 1 ? 0xedb88320 : 0);
-    }
-    return ~crc;
-}
-
-/* Writes a chunk of EXIF that states so many hundredths of a second at ISO 200 and f/2; returns its size. */
-static size_t put_exposure(unsigned char *at, uint32_t hundredths)
-{
-    enum { RATIONAL = 5, SHORT = 3, EXIF = 34665, TIME = 33434, F_NUMBER = 33437, ISO = 34855, BEHIND = 68 };
-    static const char head[] = "MM\0*\0\0\0\x08";
-    const uint32_t entry[][4] = {
-        {TIME, RATIONAL, 1, BEHIND}, {F_NUMBER, RATIONAL, 1, BEHIND + 8}, {ISO, SHORT, 1, 200u << 16}};
-    const uint32_t fractions[] = {hundredths, 100, 2, 1};
-    unsigned char *const begin = at, *const name = at + 4;
-    at += 8;
-    memcpy(name, "eXIf", 4);
-    memcpy(at, head, sizeof head - 1);
-    at += sizeof head - 1;
-    at += put(at, 1, 2);
-    at += put(at, EXIF, 2);
-    at += put(at, 4, 2);
-    at += put(at, 1, 4);
-    at += put(at, 26, 4);
-    at += put(at, 0, 4);
-    at += put(at, 3, 2);
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 4; k++)
-            at += put(at, entry[i][k], k < 2 ? 2 : 4);
-    at += put(at, 0, 4);
-    for (int i = 0; i < 4; i++)
-        at += put(at, fractions[i], 4);
-    put(begin, (uint32_t)(at - name - 4), 4);
-    at += put(at, checksum(name, (size_t)(at - name)), 4);
-    return (size_t)(at - begin);
-}
+#include "png_exif.h"
 
 /* Writes a picture of one value whose EXIF states an exposure. */
 static void write_exposed(const char *name, float value, uint32_t hundredths)
 {
-    enum { HEAD = 33 }; /* a PNG's signature and first chunk */
-    char *data;
-    size_t size;
-    unsigned char chunk[160];
     write_flat(name, 6, 4, 3, value, IMG_LINEAR16);
-    assert_int_equal(file_read(scratch_path(name), 1 << 20, &data, &size), OK);
-    const size_t more = put_exposure(chunk, hundredths);
-    unsigned char *whole = malloc(size + more);
-    assert_non_null(whole);
-    memcpy(whole, data, HEAD);
-    memcpy(whole + HEAD, chunk, more);
-    memcpy(whole + HEAD + more, data + HEAD, size - HEAD);
-    assert_int_equal(file_write(scratch_path(name), whole, size + more), OK);
-    free(whole);
-    free(data);
+    png_add_exif(scratch_path(name), hundredths, 0);
 }
 
 static void three_exposed(uint32_t a, uint32_t b, uint32_t c)

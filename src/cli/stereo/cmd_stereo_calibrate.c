@@ -24,7 +24,7 @@ static const char help[] =
     "      --mask FILE    white on the ball (default: mask.png or the like in DIR, else the ball is\n"
     "                     searched for)\n"
     "      --linear       8-bit pictures are linear already, not sRGB\n"
-    "      --fov DEG      the camera's horizontal field of view (default: as seen from afar)\n"
+    "      --fov DEG      the camera's horizontal field of view (default: by EXIF, else as seen from afar)\n"
     "  -o, --output DIR   where to (default: DIR itself)\n"
     "      --json         a report as JSON on standard output\n"
     "  -t, --threads N    how many threads work (default: one a processor)\n"
