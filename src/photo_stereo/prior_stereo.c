@@ -77,6 +77,7 @@ static void take(const merlin_surface *found, int pictures, merlin_maps *maps)
     if (pictures >= PST_FEWEST_UNKNOWN) measured_albedo_take(&found->albedo, maps);
     maps->refined = 1;
     maps->doubts &= ~(unsigned)MERLIN_DOUBT_NOT_REFINED;
+    if (found->strengths_unsure) maps->doubts |= MERLIN_DOUBT_STRENGTHS_UNEQUAL;
 }
 
 /* Surface and lights that are expected, in the space of the capture's camera. */

@@ -40,6 +40,16 @@ static void expect(const merlin_capture *c, const vec3 *light, float flatter, ex
     }
 }
 
+/* Exposes pictures as a camera does that is left to itself. */
+static void expose_as_it_likes(merlin_capture *c)
+{
+    for (int k = 0; k < c->count; k++)
+        for (int i = 0; i < c->width * c->height * c->channels; i++)
+            c->picture[k][i] = (uint16_t)((float)c->picture[k][i] * (0.4f + 0.6f * (float)(k * 7 % 5) / 4));
+    pst_capture_forget_lights(c);
+    c->intensities_known = false;
+}
+
 static double solve_expecting(const merlin_capture *c, const expectation *e, bool *unsure)
 {
     merlin_surface s;
@@ -50,6 +60,40 @@ static double solve_expecting(const merlin_capture *c, const expectation *e, boo
     merlin_surface_free(&s);
     print_message("%.2f degrees%s\n", angle, *unsure ? ", unsure" : "");
     return angle;
+}
+
+static bool strengths_are_doubted(const merlin_capture *c, const expectation *e, double *angle)
+{
+    merlin_surface s;
+    if (pst_solve_expecting(c, &unknown, &(pst_expected){.normal = &e->normal, .light = e->light}, &s) != OK)
+        fail_msg("%s", status_message());
+    const bool doubted = s.strengths_unsure;
+    *angle = mean_angle(c, &s.normal);
+    print_message("%.2f degrees%s\n", *angle, doubted ? ", strengths unequal" : "");
+    merlin_surface_free(&s);
+    return doubted;
+}
+
+/* Lights of one strength are found as such; exposures that differ, which nothing tells, do not pass for them. */
+static void exposures_that_nothing_tells_are_doubted(void **state)
+{
+    (void)state;
+    merlin_capture c;
+    vec3 light[LIGHTS];
+    double angle;
+    expectation e;
+    relief_capture(&painted, &c);
+    for (int k = 0; k < LIGHTS; k++)
+        light[k] = vec3_of(c.light[k].direction);
+    pst_capture_forget_lights(&c);
+    expect(&c, light, 0.6f, &e);
+    assert_false(strengths_are_doubted(&c, &e, &angle));
+    assert_true(angle < 4);
+    expose_as_it_likes(&c);
+    assert_true(strengths_are_doubted(&c, &e, &angle));
+    assert_true(angle < 8);
+    img_free(&e.normal);
+    capture_drop(&c);
 }
 
 /* Lights that are not quite equally strong mislead whoever relies on their strengths alone. */
@@ -173,6 +217,7 @@ static void few_pictures_of_several_objects_are_unsure(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(exposures_that_nothing_tells_are_doubted),
         cmocka_unit_test(an_expected_surface_decides_what_strengths_do_not),
         cmocka_unit_test(lights_that_nobody_expects_are_unsure),
         cmocka_unit_test(few_pictures_correct_what_is_expected),

@@ -37,8 +37,13 @@ static light_terms make_terms(light_point point[POINTS], vec3 light[LIGHTS], vec
         light[k] = vec3_make((float)a.x, (float)a.y, (float)a.z);
         expected[k] = vec3_scale(vec3_make((float)b.x, (float)b.y, (float)b.z), k == 2 ? 0 : 0.3f + 0.1f * (float)k);
     }
-    return (light_terms){
-        .light = light, .expected_light = expected, .count = LIGHTS, .point = point, .points = POINTS, .rough = 0.1};
+    return (light_terms){.light = light,
+                         .expected_light = expected,
+                         .count = LIGHTS,
+                         .point = point,
+                         .points = POINTS,
+                         .rough = 0.1,
+                         .uneven = 0.02};
 }
 
 static const double matrix[9] = {0.9, 0.1, -0.2, 0.15, 1.1, 0.05, 0.1, -0.3, 0.8};

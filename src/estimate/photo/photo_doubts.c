@@ -181,6 +181,7 @@ static const struct {
     {MERLIN_DOUBT_ROUGHNESS_CLAMPED, "roughness_clamped"},
     {MERLIN_DOUBT_DEPTH_CLAMPED, "depth_clamped"},
     {MERLIN_DOUBT_NOT_REFINED, "not_refined"},
+    {MERLIN_DOUBT_STRENGTHS_UNEQUAL, "strengths_unequal"},
 };
 enum { NAMES = sizeof names / sizeof *names };
 
@@ -244,6 +245,9 @@ static const char *plain_words(merlin_doubt doubt)
         return "the photograph's edge cuts the object off, and its shape is less sure there";
     case MERLIN_DOUBT_GREY:
         return "it is a black-and-white picture: albedo's colour is not to be known";
+    case MERLIN_DOUBT_STRENGTHS_UNEQUAL:
+        return "the pictures' lights do not seem equally strong, or their exposures were not the same, and normals may "
+               "be many degrees off: fix the exposure, or list the strengths in light_intensities.txt";
     default:
         return "";
     }

@@ -30,6 +30,7 @@ typedef struct pst_rotation {
     double at[9]; /* row-major, of determinant 1 or -1 */
     bool unsure;  /* whether the most integrable rotation is hardly integrable, has much of the surface facing away, or
                    * differs much from the one with the inflated outline, or neither sign is similar to that */
+    bool uneven;  /* whether lights that were found with what is expected are not equally strong */
 } pst_rotation;
 
 static inline vec3 pst_transform(const double m[9], vec3 v)

@@ -8,8 +8,8 @@
 #include "stereo/uncalibrated/integrable.h"
 
 /* Finds m: m·b are the surface's normals times albedo, the transposed inverse of m times a light its direction times
- * strength. f->b: averaged over a neighbourhood; light: count of them, in its space. MERLIN_BAD_INPUT if the mask is
- * too thin. */
-status pst_fit_lights(const pst_pseudo *f, const vec3 *light, int count, double m[9]);
+ * strength. f->b: averaged over a neighbourhood; light: count of them, in its space. *uneven: whether the lights are
+ * not equally strong, so that strengths were held against m the less. MERLIN_BAD_INPUT if the mask is too thin. */
+status pst_fit_lights(const pst_pseudo *f, const vec3 *light, int count, double m[9], bool *uneven);
 
 #endif

@@ -3,9 +3,9 @@
 
 #include <string.h>
 
-/* Residuals at which a prior is about half given up: of the logarithm of a light's strength, of a unit vector's
- * distance from an expected normal, and from an expected light. */
-static const double uneven = 0.02, unlike = 0.5, aside = 0.5;
+/* Residuals at which a prior is about half given up: of a unit vector's distance from an expected normal, and from an
+ * expected light. */
+static const double unlike = 0.5, aside = 0.5;
 /* Weights of integrability and of the inflated outline against that of the lights' strengths; the expected surface and
  * the expected lights count as much as these. docs/notes/several_photographs.md has the errors with other weights. */
 static const double integrable_weight = 5, outline_weight = 2;
@@ -50,7 +50,7 @@ static void add_dual_product(exact3 g, const double dual[9], exact3 light, doubl
     }
 }
 
-static term strength_term(exact3 light, const double dual[9])
+static term strength_term(exact3 light, const double dual[9], double uneven)
 {
     const double square = fmax(exact3_dot(light, light), 1e-24), off = log(square) / (2 * uneven);
     term out = {.residual = atan(off)};
@@ -126,7 +126,7 @@ double light_terms_cost(const light_terms *t, const double m[9], light_equations
     if (equations) memset(equations, 0, sizeof *equations);
     for (int k = 0; k < t->count; k++) {
         const exact3 light = exact3_transform(dual, exact3_of(t->light[k]));
-        const term strength = strength_term(light, dual);
+        const term strength = strength_term(light, dual, t->uneven);
         cost += take(&strength, 1, equations);
         if (!t->expected_light) continue;
         const term direction = direction_term(light, exact3_of(t->expected_light[k]), dual);

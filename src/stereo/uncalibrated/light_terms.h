@@ -22,7 +22,8 @@ typedef struct light_terms {
     int count;
     light_point *point;
     size_t points;
-    double rough; /* ordinary residual of integrability */
+    double rough;  /* ordinary residual of integrability */
+    double uneven; /* logarithm of a light's strength at which it is half given up that it is as strong as the others */
 } light_terms;
 
 /* Normal equations of a step: matrix, whose lower half is set, times step is right. */

@@ -367,6 +367,7 @@ status pst_solve_uncalibrated(const pst_problem *p, merlin_surface *out)
         const bool alone = are_near && camera_known && p->expected && p->expected->lights_alone;
         s = alone ? take_lights(&near, out) : solve_as(&q, are_near ? &near : &distant, camera_known, out);
         if (s == OK) out->lights_unsure = is_unsure(p, are_near ? &near : &distant, are_near);
+        out->strengths_unsure = !are_near && distant.rotation.uneven;
     }
     free(near.light);
     free(distant.light);

@@ -135,7 +135,7 @@ static status resolve_as_expected(pst_pseudo *f, lights3 *l, pst_rotation *rotat
     for (int k = 0; k < l->count; k++)
         light[k] = vec3_make(l->x[k], l->y[k], l->z[k]);
     status s = pst_average_surface(f);
-    if (s == OK) s = pst_fit_lights(f, light, l->count, rotation->at);
+    if (s == OK) s = pst_fit_lights(f, light, l->count, rotation->at, &rotation->uneven);
     free(light);
     if (s != OK) return s;
     if (!pst_dual(rotation->at, dual)) return fail(MERLIN_BAD_INPUT, "the pictures do not tell where the lights are");
