@@ -22,7 +22,7 @@ enum {
     PIXELS_HIGH = 40963,
 };
 enum { FIRED = 1, NO_FLASH_THERE = 32 }; /* bits of FLASH */
-static const double DIAGONAL_35MM = 43.2666, SHORTEST = 1, LONGEST = 5000;
+static const double DIAGONAL_35MM = 43.2666, SHORTEST = 1, LONGEST = 5000, BRIGHTEST = 1e12;
 
 /* Returns the page that has an entry: the EXIF page below the first, or the first itself, as in Canon's CR3. */
 static uint64_t page_with(const tiff_head *t, unsigned tag)
@@ -102,7 +102,7 @@ static void take_facts(const tiff_head *t, exif_facts *out)
     if (!(focal >= SHORTEST)) focal = focal_by_sensor(t);
     if (focal >= SHORTEST && focal <= LONGEST) out->focal_35mm = (float)focal;
     const double bright = exposure(t);
-    if (isfinite(bright)) out->exposure = (float)bright;
+    if (bright < BRIGHTEST) out->exposure = (float)bright;
     out->wide = pixels(t, PIXELS_WIDE);
     out->high = pixels(t, PIXELS_HIGH);
 }
