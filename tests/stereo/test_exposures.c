@@ -51,8 +51,10 @@ static void equal_or_unknown_exposures_change_nothing(void **state)
     assert_float_equal(c.light[2].intensity[0], 1, 0);
     pst_capture_free(&c);
     three_exposed(1, 2, 20000); /* no camera's */
+    write_exposed("ambient.png", 0.1f, 1);
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
     assert_float_equal(c.light[2].intensity[0], 1, 0);
+    assert_float_equal(c.picture[2][5] / 65535.0, 0.7 - 0.1, 3e-5);
     pst_capture_free(&c);
 }
 

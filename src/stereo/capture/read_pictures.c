@@ -280,8 +280,11 @@ static status read_exposure(const char *path, float *out)
     return s;
 }
 
+/* Reads the exposures of all pictures and of the ambient one. No camera's differ so much as what is absurd. */
 static status read_exposures(reading *r, const merlin_capture *c)
 {
+    static const float absurd = 1000;
+    float least = HUGE_VALF, most = 0;
     bool all = true;
     status s = r->ambient_path ? read_exposure(r->ambient_path, &r->ambient_exposure) : OK;
     r->exposure = calloc((size_t)c->count, sizeof *r->exposure);
@@ -289,7 +292,9 @@ static status read_exposures(reading *r, const merlin_capture *c)
     for (int i = 0; i < c->count && s == OK && all; i++) {
         char *path = path_of(r, c->name[i]);
         s = read_exposure(path, &r->exposure[i]);
-        all = r->exposure[i] > 0;
+        least = fminf(least, r->exposure[i]);
+        most = fmaxf(most, r->exposure[i]);
+        all = r->exposure[i] > 0 && most <= absurd * least;
         free(path);
     }
     if (all) return s;
@@ -301,20 +306,20 @@ static status read_exposures(reading *r, const merlin_capture *c)
 /* Takes exposures that differ for strengths of the lights: values are divided by either. */
 static void even_out(const reading *r, merlin_capture *c)
 {
-    static const double differ = 1.02, absurd = 1000;
+    static const double differ = 1.02;
     double least = HUGE_VAL, most = 0, sum = 0;
     for (int i = 0; i < c->count && r->exposure; i++) {
         least = fmin(least, (double)r->exposure[i]);
         most = fmax(most, (double)r->exposure[i]);
         sum += (double)r->exposure[i];
     }
-    if (c->intensities_listed || !(most > differ * least) || most > absurd * least) return;
+    if (c->intensities_listed || !(most > differ * least)) return;
     for (int i = 0; i < c->count; i++)
         for (int ch = 0; ch < 3; ch++)
             c->light[i].intensity[ch] = (float)((double)r->exposure[i] * c->count / sum);
     c->intensities_known = true;
     warnings_add(&c->noticed, "exposures_differ",
-                 "by their EXIF some pictures were exposed up to %.2g times as much as others, which is evened out: a "
+                 "by their EXIF some pictures were exposed up to %.3g times as much as others, which is evened out: a "
                  "fixed exposure is more exact",
                  most / least);
 }
