@@ -96,6 +96,51 @@ static void exposures_that_nothing_tells_are_doubted(void **state)
     capture_drop(&c);
 }
 
+/* Five pictures by a camera far away. */
+static double solve_five(const merlin_capture *c, const expectation *e, const img *flat, bool *unequal)
+{
+    enum { FIVE = 5 };
+    static const float near[FIVE] = {0.8f, 0.8f, 0.8f, 0.8f, 0.8f};
+    merlin_surface s;
+    merlin_capture few = *c;
+    few.count = FIVE;
+    const pst_expected expected = {
+        .normal = &e->normal, .depth = flat, .light = e->light, .compared = e->light, .near = near};
+    if (pst_solve_expecting(&few, &unknown, &expected, &s) != OK) fail_msg("%s", status_message());
+    const double angle = mean_angle(c, &s.normal);
+    *unequal = s.strengths_unsure;
+    print_message("five pictures: %.2f degrees%s\n", angle, *unequal ? ", strengths unequal" : "");
+    assert_false(s.lights_unsure);
+    merlin_surface_free(&s);
+    return angle;
+}
+
+static void few_pictures_from_far_away_have_distant_lights(void **state)
+{
+    (void)state;
+    merlin_capture c;
+    vec3 light[LIGHTS];
+    expectation e;
+    img flat;
+    bool unequal;
+    relief_capture(&painted, &c);
+    for (int k = 0; k < LIGHTS; k++)
+        light[k] = vec3_of(c.light[k].direction);
+    pst_capture_forget_lights(&c);
+    expect(&c, light, 0.6f, &e);
+    assert_int_equal(img_copy(&flat, &c.mask), OK);
+    const double expected = mean_angle(&c, &e.normal);
+    print_message("expected: %.2f degrees\n", expected);
+    assert_true(solve_five(&c, &e, &flat, &unequal) < 0.7 * expected);
+    assert_false(unequal);
+    expose_as_it_likes(&c);
+    assert_true(solve_five(&c, &e, &flat, &unequal) < expected);
+    assert_true(unequal);
+    img_free(&flat);
+    img_free(&e.normal);
+    capture_drop(&c);
+}
+
 /* Lights that are not quite equally strong mislead whoever relies on their strengths alone. */
 static void an_expected_surface_decides_what_strengths_do_not(void **state)
 {
@@ -218,6 +263,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exposures_that_nothing_tells_are_doubted),
+        cmocka_unit_test(few_pictures_from_far_away_have_distant_lights),
         cmocka_unit_test(an_expected_surface_decides_what_strengths_do_not),
         cmocka_unit_test(lights_that_nobody_expects_are_unsure),
         cmocka_unit_test(few_pictures_correct_what_is_expected),

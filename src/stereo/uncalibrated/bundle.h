@@ -13,7 +13,8 @@
  * the logarithm of depth at the cells' corners, so that the surface is integrable by construction; its mean is 0, and
  * depth is in units of the camera's mean distance. Priors, all small compared with the pictures, determine what near
  * lights hardly do: the lights have about equal distances from the object, and the surface does not bend or twist more
- * than necessary. Where a surface and lights are expected from elsewhere, these are priors, too. */
+ * than necessary. Distant lights are far near ones (bundle_kind). Where a surface and lights are expected from
+ * elsewhere, these are priors, too. */
 #ifndef MERLIN_STEREO_UNCALIBRATED_BUNDLE_H
 #define MERLIN_STEREO_UNCALIBRATED_BUNDLE_H
 
@@ -34,8 +35,13 @@ typedef struct bundle_expected {
     float *weight; /* per cell: 0 where no surface is expected, less where it is steep */
 } bundle_expected;
 
+/* What the lights are. Those of two to six pictures by a camera far away are distant: the distances that they have in
+ * the bundle, all far, stand for their strengths, which are equal or free. */
+typedef enum bundle_kind { BUNDLE_NEAR, BUNDLE_DISTANT_EQUAL, BUNDLE_DISTANT_FREE } bundle_kind;
+
 typedef struct bundle {
     const pst_problem *problem;
+    bundle_kind kind;
     pinhole camera;
     int left, top, side;        /* the grid in the pictures, in pixels; side: of a cell */
     int columns, rows;          /* numbers of cells */
@@ -53,9 +59,11 @@ typedef struct bundle {
     double cost; /* cost of the last refinement: the sum of each value's share of an outlier, and the priors */
 } bundle;
 
-/* Makes the grid. across: number of cells along the longer side of the object. The camera has a perspective.
- * MERLIN_BAD_INPUT if the mask contains too few cells. */
+/* Makes the grid, for near lights. across: number of cells along the longer side of the object. The camera has a
+ * perspective. MERLIN_BAD_INPUT if the mask contains too few cells. */
 status bundle_new(const pst_problem *p, const pinhole *camera, int across, bundle *out);
+/* Distance of distant lights that are as strong as most, in radii of the object. */
+#define BUNDLE_AFAR 100.0f
 void bundle_free(bundle *b);
 
 /* Returns the depth at a pixel of the pictures in units of the camera's mean distance, inter- and extrapolated from the

@@ -6,6 +6,9 @@
 /* Weights of priors in units of an outlier: for the logarithm of a light's distance relative to the lights' mean; for a
  * bend and a twist of slope 1 between neighbouring cells, each times the number of lights; for the mean depth. */
 static const double equal_distance = 1, bending = 0.003, twisting = 0.02, fixed_depth = 1e5;
+/* Factor of the first for distant lights of equal strength; logarithm of a distance at which it is half given up for
+ * those of others. */
+static const double equal_strength = 1000, uneven = 0.1;
 /* The same for what is expected, of eight pictures: a slope of 1, each time per cell; a direction, times 1 minus the
  * cosine, twice; the logarithm of a distance. Powers of the number of pictures by which more of them reduce it, and
  * fewer raise it: what is expected errs the same way everywhere, and many pictures know better
@@ -99,7 +102,8 @@ static double add_expected_lights(const bundle *b, bundle_equations *y)
     const double trusted = trust(b) * (doubt > 0 ? (double)doubt : 1);
     double cost = 0;
     for (int k = 0; k < b->lights; k++) {
-        const double weight = trusted * (double)e->sure[k] * b->cells, far = expected_distance * weight;
+        const double weight = trusted * (double)e->sure[k] * b->cells;
+        const double far = b->kind == BUNDLE_NEAR ? expected_distance * weight : 0;
         const vec3 from = vec3_sub(b->position[k], b->centre), wanted = vec3_sub(e->place[k], b->centre);
         const vec3 aim = vec3_normalize(wanted);
         const double cosine = (double)vec3_dot(aim, vec3_normalize(from));
@@ -117,12 +121,41 @@ static double add_expected_lights(const bundle *b, bundle_equations *y)
     return cost;
 }
 
+/* Adds what a light's distance differs from the mean by, in logarithms. The difference is `off`, whose derivative by
+ * another light's is -1 over their number; weight: that of its square, as far as it is not given up. */
+static void add_distance(const bundle *b, bundle_equations *y, int light, double off, double weight)
+{
+    const double share = 1.0 / b->lights;
+    for (int i = 0; i < b->lights; i++) {
+        const double own = (i == light) - share;
+        const size_t at = (size_t)b->corners + 3 * (size_t)i + 2;
+        y->right[at] -= weight * off * own;
+        for (int j = 0; j <= i; j++)
+            y->matrix[at * (size_t)y->size + (size_t)(b->corners + 3 * j + 2)] += weight * own * ((j == light) - share);
+    }
+}
+
+static double add_equal_distances(const bundle *b, bundle_equations *y)
+{
+    const double prior = equal_distance * b->cells * (b->kind == BUNDLE_DISTANT_EQUAL ? equal_strength : 1);
+    const bool strict = b->kind != BUNDLE_DISTANT_FREE;
+    double mean = 0, cost = 0;
+    for (int k = 0; k < b->lights; k++)
+        mean += (double)log_distance(b, k) / b->lights;
+    for (int k = 0; k < b->lights; k++) {
+        const double off = (double)log_distance(b, k) - mean, ratio = off * off / (uneven * uneven);
+        cost += prior * (strict ? off * off : uneven * uneven * log1p(ratio));
+        if (y) add_distance(b, y, k, off, prior / (strict ? 1 : 1 + ratio));
+    }
+    return cost;
+}
+
 double bundle_add_priors(const bundle *b, bundle_equations *y)
 {
     form_sum f = {b, y, 0};
     list_forms(b, add_form, &f);
     size_t n = y ? (size_t)y->size : 0;
-    double mean = 0, sum = 0, prior = equal_distance * b->cells;
+    double sum = 0;
     for (int i = 0; i < b->corners; i++)
         sum += (double)b->log_depth[i] / b->corners;
     f.cost += fixed_depth * sum * sum;
@@ -132,17 +165,7 @@ double bundle_add_priors(const bundle *b, bundle_equations *y)
         for (size_t j = 0; j <= i; j++)
             y->matrix[i * n + j] += share;
     }
-    for (int k = 0; k < b->lights; k++)
-        mean += (double)log_distance(b, k) / b->lights;
-    for (int k = 0; k < b->lights; k++) {
-        double off = (double)log_distance(b, k) - mean;
-        f.cost += prior * off * off;
-        if (!y) continue;
-        size_t at = (size_t)b->corners + 3 * (size_t)k + 2;
-        y->right[at] -= prior * off;
-        for (int j = 0; j <= k; j++)
-            y->matrix[at * n + (size_t)(b->corners + 3 * j + 2)] += prior * ((j == k) - 1.0 / b->lights);
-    }
+    f.cost += add_equal_distances(b, y);
     if (b->expected) f.cost += add_expected_lights(b, y);
     return f.cost;
 }

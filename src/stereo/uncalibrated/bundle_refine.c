@@ -14,6 +14,8 @@
  * share of a value's weight that counts as curvature. Limits of lights' distances in radii of the object. */
 static const double settled = 1e-6, most_damped = 1e8, shared_damping = 0.1;
 static const float nearest = 1.1f, farthest = 60;
+/* The same of distant ones, about BUNDLE_AFAR. */
+static const float nearest_afar = 30, farthest_afar = 300;
 
 /* A point of the surface; m is its normal's direction, not unit. */
 typedef struct patch {
@@ -257,6 +259,13 @@ static bool solve_step(bundle_equations *y, double damping)
     return dense_solve_positive(y->damped, y->size, y->step);
 }
 
+static float within_limits(const bundle *b, float distance)
+{
+    const bool near = b->kind == BUNDLE_NEAR;
+    return fminf(fmaxf(distance, (near ? nearest : nearest_afar) * b->radius),
+                 (near ? farthest : farthest_afar) * b->radius);
+}
+
 static void take_step(bundle *b, const bundle_equations *y)
 {
     memcpy(y->old_depth, b->log_depth, (size_t)b->corners * sizeof *y->old_depth);
@@ -270,9 +279,8 @@ static void take_step(bundle *b, const bundle_equations *y)
         vec3 from = vec3_sub(b->position[k], b->centre), to = from;
         to = vec3_fma(to, clamp((float)d[0], -0.5f, 0.5f), y->turn[3 * k]);
         to = vec3_fma(to, clamp((float)d[1], -0.5f, 0.5f), y->turn[3 * k + 1]);
-        float distance = vec3_length(from) * expf(clamp((float)d[2], -0.5f, 0.5f));
-        distance = fminf(fmaxf(distance, nearest * b->radius), farthest * b->radius);
-        b->position[k] = vec3_fma(b->centre, distance, vec3_normalize(to));
+        const float distance = vec3_length(from) * expf(clamp((float)d[2], -0.5f, 0.5f));
+        b->position[k] = vec3_fma(b->centre, within_limits(b, distance), vec3_normalize(to));
     }
 }
 

@@ -322,7 +322,7 @@ static status take_lights(hypothesis *h, merlin_surface *out)
 
 static status solve_few(const pst_problem *p, bool camera_known, merlin_surface *out)
 {
-    status s = pst_solve_few(p, out);
+    status s = pst_solve_few(p, camera_known, out);
     name_places(p, camera_known, out);
     return s;
 }

@@ -42,13 +42,19 @@ typedef struct pass {
 static const pass coarse_pass[] = {{0.4f, 30}, {0.2f, 30}, {0.1f, 30}}, last_pass = {0.1f, 30};
 static const pass fine_pass[] = {{0.15f, 20}, {0.08f, 30}};
 
-/* Makes a bundle with its priors. */
-static status new_bundle(const pst_problem *p, const pinhole *camera, int across, bundle *out)
+/* Makes a bundle of one kind of lights, with its priors. */
+static status new_bundle_of(bundle_kind kind, const pst_problem *p, const pinhole *camera, int across, bundle *out)
 {
     status s = bundle_new(p, camera, across, out);
+    out->kind = kind;
     if (s == OK) s = bundle_expect(out);
     if (s != OK) bundle_free(out);
     return s;
+}
+
+static status new_bundle(const pst_problem *p, const pinhole *camera, int across, bundle *out)
+{
+    return new_bundle_of(BUNDLE_NEAR, p, camera, across, out);
 }
 
 /* Returns a position on a spiral over the camera's side of the object and slightly beyond. */
@@ -220,6 +226,18 @@ static double cost_of_value(const bundle *b)
     return sum / ((double)b->cells * b->lights);
 }
 
+/* Refines what was found on a finer grid, and stores it. */
+static status refine_fine(bundle *fine, const bundle *coarse, merlin_light *light, img *depth, pst_near_bend *bend)
+{
+    bundle_take(fine, coarse);
+    bundle_fit_albedo(fine);
+    status s = refine(fine, fine_pass, sizeof fine_pass / sizeof *fine_pass);
+    if (s == OK) s = take_result(fine, light, depth);
+    if (s == OK && bend) s = bundle_bend_normals(fine, &bend->normal);
+    if (s == OK && bend) bend->cost_of_value = cost_of_value(fine);
+    return s;
+}
+
 status pst_find_near_lights(const pst_problem *p, const pinhole *camera, merlin_light *light, img *depth,
                             pst_near_bend *bend)
 {
@@ -228,14 +246,21 @@ status pst_find_near_lights(const pst_problem *p, const pinhole *camera, merlin_
     status s = p->capture->count >= PST_FEWEST_UNKNOWN ? solve_coarse(p, camera, &coarse) : OK;
     if (s == OK) s = try_expected(p, camera, &coarse);
     if (s == OK) s = new_bundle(p, camera, FINE, &fine);
-    if (s == OK) {
-        bundle_take(&fine, &coarse);
-        bundle_fit_albedo(&fine);
-        s = refine(&fine, fine_pass, sizeof fine_pass / sizeof *fine_pass);
-    }
-    if (s == OK) s = take_result(&fine, light, depth);
-    if (s == OK && bend) s = bundle_bend_normals(&fine, &bend->normal);
-    if (s == OK && bend) bend->cost_of_value = cost_of_value(&fine);
+    if (s == OK) s = refine_fine(&fine, &coarse, light, depth, bend);
+    bundle_free(&coarse);
+    bundle_free(&fine);
+    return s;
+}
+
+status pst_find_lights_afar(const pst_problem *p, const pinhole *camera, bool equal, merlin_light *light, img *depth,
+                            pst_near_bend *bend)
+{
+    const bundle_kind kind = equal ? BUNDLE_DISTANT_EQUAL : BUNDLE_DISTANT_FREE;
+    bundle coarse = {0}, fine = {0};
+    status s = new_bundle_of(kind, p, camera, COARSE, &coarse);
+    if (s == OK) s = solve_expected(&coarse);
+    if (s == OK) s = new_bundle_of(kind, p, camera, FINE, &fine);
+    if (s == OK) s = refine_fine(&fine, &coarse, light, depth, bend);
     bundle_free(&coarse);
     bundle_free(&fine);
     return s;

@@ -22,9 +22,13 @@ typedef struct pst_near_bend {
 status pst_find_near_lights(const pst_problem *p, const pinhole *camera, merlin_light *light, img *depth,
                             pst_near_bend *bend);
 
+/* The same for distant lights, seen by a camera from far away: they are far near ones. equal: they are of one strength,
+ * else their distances stand for their strengths. */
+status pst_find_lights_afar(const pst_problem *p, const pinhole *camera, bool equal, merlin_light *light, img *depth,
+                            pst_near_bend *bend);
+
 /* Solves fewer than PST_FEWEST_UNKNOWN pictures by what is expected (uncalibrated_few.c). p's capture has a
- * perspective.
- */
-status pst_solve_few(const pst_problem *p, merlin_surface *out);
+ * perspective; camera_known: it is the true one, so that lights are near, else it is far away, and they are distant. */
+status pst_solve_few(const pst_problem *p, bool camera_known, merlin_surface *out);
 
 #endif
