@@ -34,9 +34,12 @@ static inline float pinhole_focal_of_35mm(int width, int height, float focal_35m
     return focal_35mm / DIAGONAL_35MM * hypotf((float)width, (float)height);
 }
 
-/* Returns the camera of a picture by its 35 mm equivalent focal length, with the axis through its middle. */
-static inline pinhole pinhole_of_35mm(int width, int height, float focal_35mm)
+/* Returns the camera by the field of view, else by the 35 mm equivalent focal length, each 0 if it is unknown, with the
+ * axis through the picture's middle; one that is far away if neither is known. */
+static inline pinhole pinhole_known(int width, int height, float field_of_view, float focal_35mm)
 {
+    if (field_of_view > 0) return pinhole_of(width, height, field_of_view);
+    if (!(focal_35mm > 0)) return (pinhole){0};
     return (pinhole){
         .focal = pinhole_focal_of_35mm(width, height, focal_35mm), .x = 0.5f * (float)width, .y = 0.5f * (float)height};
 }

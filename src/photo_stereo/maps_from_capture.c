@@ -133,10 +133,7 @@ static void find_lens(const merlin_params *params, merlin_capture *c)
     const float focal_35mm = params->shot.focal_35mm > 0 ? params->shot.focal_35mm : c->focal_35mm;
     const float distance = c->camera.distance;
     if (pinhole_is_near(&c->camera)) return;
-    if (params->fov > 0)
-        c->camera = pinhole_of(c->width, c->height, params->fov);
-    else if (focal_35mm > 0)
-        c->camera = pinhole_of_35mm(c->width, c->height, focal_35mm);
+    c->camera = pinhole_known(c->width, c->height, params->fov, focal_35mm);
     c->camera.distance = distance;
 }
 

@@ -14,12 +14,12 @@ typedef struct expectation {
     vec3 light[LIGHTS];
 } expectation;
 
-/* The sphere, whose colours vary, under lights of strengths from 0.8 to 1. */
-static void dim_some(merlin_capture *c)
+/* Dims the pictures to shares from `least` to 1, as weaker lights or a camera that is left to itself do. */
+static void dim_some(merlin_capture *c, float least)
 {
     for (int k = 0; k < LIGHTS; k++)
         for (int i = 0; i < c->width * c->height * c->channels; i++)
-            c->picture[k][i] = (uint16_t)((float)c->picture[k][i] * (0.8f + 0.2f * (float)(k * 7 % 5) / 4));
+            c->picture[k][i] = (uint16_t)((float)c->picture[k][i] * (least + (1 - least) * (float)(k * 7 % 5) / 4));
     pst_capture_forget_lights(c);
     c->intensities_known = false;
 }
@@ -40,38 +40,45 @@ static void expect(const merlin_capture *c, const vec3 *light, float flatter, ex
     }
 }
 
-/* Exposes pictures as a camera does that is left to itself. */
-static void expose_as_it_likes(merlin_capture *c)
+typedef struct solution {
+    double angle;
+    bool unsure, unequal; /* lights_unsure and strengths_unsure */
+} solution;
+
+static solution solve_with(const merlin_capture *c, const pst_expected *expected)
 {
-    for (int k = 0; k < c->count; k++)
-        for (int i = 0; i < c->width * c->height * c->channels; i++)
-            c->picture[k][i] = (uint16_t)((float)c->picture[k][i] * (0.4f + 0.6f * (float)(k * 7 % 5) / 4));
-    pst_capture_forget_lights(c);
-    c->intensities_known = false;
+    merlin_surface s;
+    if (pst_solve_expecting(c, &unknown, expected, &s) != OK) fail_msg("%s", status_message());
+    const solution found = {mean_angle(c, &s.normal), s.lights_unsure, s.strengths_unsure};
+    merlin_surface_free(&s);
+    print_message("%d pictures: %.2f degrees%s%s\n", c->count, found.angle, found.unsure ? ", unsure" : "",
+                  found.unequal ? ", strengths unequal" : "");
+    return found;
 }
 
 static double solve_expecting(const merlin_capture *c, const expectation *e, bool *unsure)
 {
-    merlin_surface s;
-    if (pst_solve_expecting(c, &unknown, &(pst_expected){.normal = &e->normal, .light = e->light}, &s) != OK)
-        fail_msg("%s", status_message());
-    const double angle = mean_angle(c, &s.normal);
-    *unsure = s.lights_unsure;
-    merlin_surface_free(&s);
-    print_message("%.2f degrees%s\n", angle, *unsure ? ", unsure" : "");
-    return angle;
+    const solution found = solve_with(c, &(pst_expected){.normal = &e->normal, .light = e->light});
+    *unsure = found.unsure;
+    return found.angle;
 }
 
 static bool strengths_are_doubted(const merlin_capture *c, const expectation *e, double *angle)
 {
-    merlin_surface s;
-    if (pst_solve_expecting(c, &unknown, &(pst_expected){.normal = &e->normal, .light = e->light}, &s) != OK)
-        fail_msg("%s", status_message());
-    const bool doubted = s.strengths_unsure;
-    *angle = mean_angle(c, &s.normal);
-    print_message("%.2f degrees%s\n", *angle, doubted ? ", strengths unequal" : "");
-    merlin_surface_free(&s);
-    return doubted;
+    const solution found = solve_with(c, &(pst_expected){.normal = &e->normal, .light = e->light});
+    *angle = found.angle;
+    return found.unequal;
+}
+
+/* Pictures the sphere, whose colours vary, under lights that are not told, and what is expected of both. */
+static void picture_painted(merlin_capture *c, expectation *e)
+{
+    vec3 light[LIGHTS];
+    relief_capture(&painted, c);
+    for (int k = 0; k < LIGHTS; k++)
+        light[k] = vec3_of(c->light[k].direction);
+    pst_capture_forget_lights(c);
+    expect(c, light, 0.6f, e);
 }
 
 /* Lights of one strength are found as such; exposures that differ, which nothing tells, do not pass for them. */
@@ -79,17 +86,12 @@ static void exposures_that_nothing_tells_are_doubted(void **state)
 {
     (void)state;
     merlin_capture c;
-    vec3 light[LIGHTS];
     double angle;
     expectation e;
-    relief_capture(&painted, &c);
-    for (int k = 0; k < LIGHTS; k++)
-        light[k] = vec3_of(c.light[k].direction);
-    pst_capture_forget_lights(&c);
-    expect(&c, light, 0.6f, &e);
+    picture_painted(&c, &e);
     assert_false(strengths_are_doubted(&c, &e, &angle));
     assert_true(angle < 4);
-    expose_as_it_likes(&c);
+    dim_some(&c, 0.4f);
     assert_true(strengths_are_doubted(&c, &e, &angle));
     assert_true(angle < 8);
     img_free(&e.normal);
@@ -101,39 +103,30 @@ static double solve_five(const merlin_capture *c, const expectation *e, const im
 {
     enum { FIVE = 5 };
     static const float near[FIVE] = {0.8f, 0.8f, 0.8f, 0.8f, 0.8f};
-    merlin_surface s;
     merlin_capture few = *c;
     few.count = FIVE;
-    const pst_expected expected = {
-        .normal = &e->normal, .depth = flat, .light = e->light, .compared = e->light, .near = near};
-    if (pst_solve_expecting(&few, &unknown, &expected, &s) != OK) fail_msg("%s", status_message());
-    const double angle = mean_angle(c, &s.normal);
-    *unequal = s.strengths_unsure;
-    print_message("five pictures: %.2f degrees%s\n", angle, *unequal ? ", strengths unequal" : "");
-    assert_false(s.lights_unsure);
-    merlin_surface_free(&s);
-    return angle;
+    const solution found = solve_with(
+        &few,
+        &(pst_expected){.normal = &e->normal, .depth = flat, .light = e->light, .compared = e->light, .near = near});
+    *unequal = found.unequal;
+    assert_false(found.unsure);
+    return found.angle;
 }
 
 static void few_pictures_from_far_away_have_distant_lights(void **state)
 {
     (void)state;
     merlin_capture c;
-    vec3 light[LIGHTS];
     expectation e;
     img flat;
     bool unequal;
-    relief_capture(&painted, &c);
-    for (int k = 0; k < LIGHTS; k++)
-        light[k] = vec3_of(c.light[k].direction);
-    pst_capture_forget_lights(&c);
-    expect(&c, light, 0.6f, &e);
+    picture_painted(&c, &e);
     assert_int_equal(img_copy(&flat, &c.mask), OK);
     const double expected = mean_angle(&c, &e.normal);
     print_message("expected: %.2f degrees\n", expected);
     assert_true(solve_five(&c, &e, &flat, &unequal) < 0.7 * expected);
     assert_false(unequal);
-    expose_as_it_likes(&c);
+    dim_some(&c, 0.4f);
     assert_true(solve_five(&c, &e, &flat, &unequal) < expected);
     assert_true(unequal);
     img_free(&flat);
@@ -152,7 +145,7 @@ static void an_expected_surface_decides_what_strengths_do_not(void **state)
     relief_capture(&painted, &c);
     for (int k = 0; k < LIGHTS; k++)
         light[k] = vec3_of(c.light[k].direction);
-    dim_some(&c);
+    dim_some(&c, 0.8f);
     assert_int_equal(pst_solve(&c, &(merlin_stereo_params){.method = MERLIN_STEREO_UNCALIBRATED}, &s), OK);
     const double plain = mean_angle(&c, &s.normal);
     merlin_surface_free(&s);
@@ -180,7 +173,7 @@ static void lights_that_nobody_expects_are_unsure(void **state)
         const float *d = c.light[(k + LIGHTS / 2) % LIGHTS].direction;
         light[k] = vec3_make(-d[1], d[0], d[2]);
     }
-    dim_some(&c);
+    dim_some(&c, 0.8f);
     expectation e;
     expect(&c, light, 1, &e);
     solve_expecting(&c, &e, &unsure);

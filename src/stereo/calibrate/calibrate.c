@@ -361,13 +361,6 @@ static status check_params(const merlin_calibrate_params *p)
                 (double)p->field_of_view);
 }
 
-/* Returns the camera by the caller's field of view, else by EXIF, else one that is far away. */
-static pinhole camera_of(const merlin_calibrate_params *p, const merlin_capture *c)
-{
-    if (p->field_of_view > 0) return pinhole_of(c->width, c->height, p->field_of_view);
-    return c->focal_35mm > 0 ? pinhole_of_35mm(c->width, c->height, c->focal_35mm) : (pinhole){0};
-}
-
 merlin_status merlin_calibrate(const char *folder, const merlin_calibrate_params *params, merlin_calibration *out)
 {
     if (out) *out = (merlin_calibration){0};
@@ -384,7 +377,7 @@ merlin_status merlin_calibrate(const char *folder, const merlin_calibrate_params
     merlin_capture c;
     s = pst_capture_read(folder, &reading, &c);
     if (s != OK) return s;
-    c.camera = camera_of(params, &c);
+    c.camera = pinhole_known(c.width, c.height, params->field_of_view, c.focal_35mm);
     s = calibrate(folder, params, &c, out);
     out->skipped = c.skipped;
     c.skipped = (skipped_files){0};

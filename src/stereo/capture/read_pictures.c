@@ -36,6 +36,7 @@ typedef struct reading {
     float *brightest;     /* brightest float of every picture */
     float *exposure;      /* of every picture (exif.h); NULL unless all are known */
     float ambient_exposure;
+    float exposure_ratio; /* of the largest exposure to the least; 1 unless all are known */
     merlin_capture *into;
 } reading;
 
@@ -297,6 +298,7 @@ static status read_exposures(reading *r, const merlin_capture *c)
         all = r->exposure[i] > 0 && most <= absurd * least;
         free(path);
     }
+    r->exposure_ratio = all ? most / least : 1;
     if (all) return s;
     free(r->exposure);
     r->exposure = NULL;
@@ -306,14 +308,11 @@ static status read_exposures(reading *r, const merlin_capture *c)
 /* Takes exposures that differ for strengths of the lights: values are divided by either. */
 static void even_out(const reading *r, merlin_capture *c)
 {
-    static const double differ = 1.02;
-    double least = HUGE_VAL, most = 0, sum = 0;
-    for (int i = 0; i < c->count && r->exposure; i++) {
-        least = fmin(least, (double)r->exposure[i]);
-        most = fmax(most, (double)r->exposure[i]);
+    static const float differ = 1.02f;
+    double sum = 0;
+    if (c->intensities_listed || !(r->exposure_ratio > differ)) return;
+    for (int i = 0; i < c->count; i++)
         sum += (double)r->exposure[i];
-    }
-    if (c->intensities_listed || !(most > differ * least)) return;
     for (int i = 0; i < c->count; i++)
         for (int ch = 0; ch < 3; ch++)
             c->light[i].intensity[ch] = (float)((double)r->exposure[i] * c->count / sum);
@@ -321,7 +320,7 @@ static void even_out(const reading *r, merlin_capture *c)
     warnings_add(&c->noticed, "exposures_differ",
                  "by their EXIF some pictures were exposed up to %.3g times as much as others, which is evened out: a "
                  "fixed exposure is more exact",
-                 most / least);
+                 (double)r->exposure_ratio);
 }
 
 /* ---- the whole ---- */

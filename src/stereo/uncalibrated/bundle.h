@@ -35,7 +35,7 @@ typedef struct bundle_expected {
     float *weight; /* per cell: 0 where no surface is expected, less where it is steep */
 } bundle_expected;
 
-/* What the lights are. Those of two to six pictures by a camera far away are distant: the distances that they have in
+/* Kind of the lights. Those of two to six pictures by a camera far away are distant: the distances that they have in
  * the bundle, all far, stand for their strengths, which are equal or free. */
 typedef enum bundle_kind { BUNDLE_NEAR, BUNDLE_DISTANT_EQUAL, BUNDLE_DISTANT_FREE } bundle_kind;
 

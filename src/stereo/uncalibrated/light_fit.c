@@ -166,13 +166,14 @@ static status fit_from_starts(light_terms *f, double best[9])
 static status compare_strengths(const light_terms *f, const double m[9], bool *differ)
 {
     double dual[9];
+    *differ = true;
+    if (!pst_dual(m, dual)) return OK;
     float *size = malloc((size_t)f->count * sizeof *size);
     if (!size) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", f->count);
-    *differ = !pst_dual(m, dual);
-    for (int k = 0; k < f->count && !*differ; k++)
+    for (int k = 0; k < f->count; k++)
         size[k] = (float)fabs(log(exact3_length(exact3_transform(dual, exact3_of(f->light[k]))) + 1e-12));
-    if (!*differ) qsort(size, (size_t)f->count, sizeof *size, number_ascending);
-    *differ = *differ || (double)size[3 * f->count / 4] > unequal;
+    qsort(size, (size_t)f->count, sizeof *size, number_ascending);
+    *differ = (double)size[3 * f->count / 4] > unequal;
     free(size);
     return OK;
 }
