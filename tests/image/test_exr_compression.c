@@ -65,6 +65,73 @@ static status read_depth(const char *path, float *value)
     return s;
 }
 
+static void read_by_library(const char *path, float *value)
+{
+    exr_context_t c = NULL;
+    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    int lines = 0;
+    exr_decode_pipeline_t d = EXR_DECODE_PIPELINE_INITIALIZER;
+    assert_int_equal(exr_start_read(&c, path, &init), 0);
+    assert_int_equal(exr_get_scanlines_per_chunk(c, 0, &lines), 0);
+    for (int y = 0; y < HEIGHT; y += lines) {
+        exr_chunk_info_t chunk;
+        assert_int_equal(exr_read_scanline_chunk_info(c, 0, y, &chunk), 0);
+        assert_int_equal((y == 0 ? exr_decoding_initialize : exr_decoding_update)(c, 0, &chunk, &d), 0);
+        d.channels[0].decode_to_ptr = (uint8_t *)(value + y * WIDTH);
+        d.channels[0].user_pixel_stride = 4;
+        d.channels[0].user_line_stride = 4 * WIDTH;
+        d.channels[0].user_bytes_per_element = 4;
+        d.channels[0].user_data_type = EXR_PIXEL_FLOAT;
+        if (y == 0) assert_int_equal(exr_decoding_choose_default_routines(c, 0, &d), 0);
+        assert_int_equal(exr_decoding_run(c, 0, &d), 0);
+    }
+    exr_decoding_destroy(c, &d);
+    exr_finish(&c);
+}
+
+static void zip_is_the_same_as_the_library_s(void **state)
+{
+    (void)state;
+    static float depth[COUNT], depth2[COUNT];
+    const exr_compression_t ways[] = {EXR_COMPRESSION_ZIP, EXR_COMPRESSION_ZIPS};
+    const char *path = scratch_path("zip.exr");
+    for (int i = 0; i < COUNT; i++)
+        depth[i] = (float)(i / WIDTH) - 0.37f * (float)(i % WIDTH % 11);
+    for (int w = 0; w < 2; w++) {
+        assert_int_equal(write_packed(path, depth, ways[w]), 0);
+        memset(depth2, 0, sizeof depth2);
+        assert_int_equal(read_depth(path, depth2), OK);
+        assert_memory_equal(depth2, depth, sizeof depth);
+    }
+    const exr_channel channel = {"depth.Z", depth, 1, true};
+    assert_int_equal(exr_write(path, WIDTH, HEIGHT, &channel, 1, NULL, 0), OK);
+    memset(depth2, 0, sizeof depth2);
+    read_by_library(path, depth2);
+    assert_memory_equal(depth2, depth, sizeof depth);
+}
+
+/* The last bytes of a file are pixels of its last chunk. */
+static void damage_is_refused(void **state)
+{
+    (void)state;
+    static float depth[COUNT], depth2[COUNT];
+    const char *path = scratch_path("damaged.exr");
+    char *bytes = NULL;
+    size_t size = 0;
+    for (int i = 0; i < COUNT; i++)
+        depth[i] = (float)(i % 13);
+    const exr_channel channel = {"depth.Z", depth, 1, true};
+    assert_int_equal(exr_write(path, WIDTH, HEIGHT, &channel, 1, NULL, 0), OK);
+    assert_int_equal(file_read(path, 1 << 20, &bytes, &size), OK);
+    for (size_t back = 1; back < 40; back++) {
+        bytes[size - back] = (char)(bytes[size - back] ^ 0x5a);
+        assert_int_equal(file_write(path, bytes, size), OK);
+        assert_int_equal(read_depth(path, depth2), MERLIN_BAD_INPUT);
+        bytes[size - back] = (char)(bytes[size - back] ^ 0x5a);
+    }
+    free(bytes);
+}
+
 /* Noise does not get smaller by compression, and is stored raw in such files. */
 static void what_b44_could_not_pack_is_read_as_it_was(void **state)
 {
@@ -116,6 +183,8 @@ static void compression_of_another_age_is_refused_with_what_to_do(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(zip_is_the_same_as_the_library_s),
+        cmocka_unit_test(damage_is_refused),
         cmocka_unit_test(what_b44_could_not_pack_is_read_as_it_was),
         cmocka_unit_test(what_dwa_packed_is_read_or_refused_with_what_to_do),
         cmocka_unit_test(compression_of_another_age_is_refused_with_what_to_do),

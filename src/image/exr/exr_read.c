@@ -9,6 +9,7 @@
 #include "base/half.h"
 #include "image/exr/exr.h"
 #include "image/exr/exr_context.h"
+#include "image/exr/exr_zip.h"
 #include "image/metadata/picture_size.h"
 
 struct exr_file {
@@ -18,6 +19,7 @@ struct exr_file {
     exr_attr_box2i_t window, display;
     const exr_attr_chlist_t *channels;
     exr_storage_t storage;
+    exr_compression_t compression;
 };
 
 /* Where a requested channel lies in a line of a chunk: bytes per pixel of the channels before it. */
@@ -60,6 +62,7 @@ static status check_layout(const exr_file *f)
 static status open_part(exr_file *f)
 {
     exr_result_t r = exr_get_storage(f->context, f->part, &f->storage);
+    if (r == EXR_ERR_SUCCESS) r = exr_get_compression(f->context, f->part, &f->compression);
     if (r == EXR_ERR_SUCCESS) r = exr_get_data_window(f->context, f->part, &f->window);
     if (r == EXR_ERR_SUCCESS) r = exr_get_display_window(f->context, f->part, &f->display);
     if (r == EXR_ERR_SUCCESS) r = exr_get_channels(f->context, f->part, &f->channels);
@@ -204,10 +207,19 @@ typedef struct reader {
     size_t count, pixel_bytes;
     exr_decode_pipeline_t decoder;
     exr_result_t (*decompress)(exr_decode_pipeline_t *decoder);
+    exr_zip zip;
     bool started;
 } reader;
 
-/* Prepares the decoder for a chunk: the library reads and decompresses, unpacking is done here. */
+static exr_result_t unzip_chunk(exr_decode_pipeline_t *d)
+{
+    if (!d->unpacked_buffer || d->chunk.unpacked_size > d->unpacked_alloc_size || d->chunk.unpacked_size < 2)
+        return EXR_ERR_CORRUPT_CHUNK;
+    return exr_zip_unpack(d->decoding_user_data, d->packed_buffer, d->chunk.packed_size, d->unpacked_buffer,
+                          d->chunk.unpacked_size);
+}
+
+/* Prepares the decoder for a chunk: the library reads and, but for ZIP, decompresses; unpacking is done here. */
 static exr_result_t aim_decoder(reader *r, const exr_chunk_info_t *chunk)
 {
     exr_context_t context = r->file->context;
@@ -216,7 +228,9 @@ static exr_result_t aim_decoder(reader *r, const exr_chunk_info_t *chunk)
     exr_result_t code = exr_decoding_initialize(context, r->file->part, chunk, &r->decoder);
     if (code == EXR_ERR_SUCCESS) code = exr_decoding_choose_default_routines(context, r->file->part, &r->decoder);
     r->decoder.unpack_and_convert_fn = NULL;
-    r->decompress = r->decoder.decompress_fn;
+    r->decoder.decoding_user_data = &r->zip;
+    const exr_compression_t by = r->file->compression;
+    r->decompress = by == EXR_COMPRESSION_ZIP || by == EXR_COMPRESSION_ZIPS ? unzip_chunk : r->decoder.decompress_fn;
     return code;
 }
 
@@ -310,6 +324,7 @@ status exr_read(exr_file *f, const exr_target *targets, size_t count)
         r.pixel_bytes += channel_bytes(&f->channels->entries[i]);
     exr_result_t code = f->storage == EXR_STORAGE_TILED ? read_tiles(&r) : read_scanlines(&r);
     if (r.started) exr_decoding_destroy(f->context, &r.decoder);
+    exr_zip_free(&r.zip);
     free(sources);
     return code == EXR_ERR_SUCCESS ? OK : fail_reading(f, code);
 }

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#include <libdeflate.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -10,6 +9,7 @@
 #include "base/half.h"
 #include "image/exr/exr.h"
 #include "image/exr/exr_context.h"
+#include "image/exr/exr_zip.h"
 
 typedef struct writer {
     const char *path;
@@ -19,8 +19,8 @@ typedef struct writer {
     size_t channel_count;
     uint16_t *samples; /* one chunk: channel × line × pixel, halves, or floats in two units each */
     size_t chunk_bytes;
-    struct libdeflate_compressor *packer;
-    uint8_t *shuffled, *changes, *zipped; /* one chunk each, at successive stages of compression */
+    exr_zip zip;
+    uint8_t *zipped; /* one chunk */
 } writer;
 
 static exr_result_t add_attribute(exr_context_t context, const exr_attribute *a)
@@ -97,28 +97,16 @@ static void fill_chunk(const writer *w, exr_encode_pipeline_t *encoder)
     }
 }
 
-/* Compresses a chunk by the format's ZIP: even bytes before odd ones, differences of successive bytes, then a zlib
- * stream; or stores it raw if that is no longer. The library's own function does the same with zlib in three times the
- * time. */
 static exr_result_t zip_chunk(exr_encode_pipeline_t *encoder)
 {
-    const writer *w = encoder->encoding_user_data;
-    const uint8_t *from = encoder->packed_buffer;
-    size_t size = encoder->packed_bytes, half = (size + 1) / 2;
-    if (size > w->chunk_bytes) return EXR_ERR_INVALID_ARGUMENT;
-    for (size_t i = 0; i < half; i++)
-        w->shuffled[i] = from[2 * i];
-    for (size_t i = half; i < size; i++)
-        w->shuffled[i] = from[2 * (i - half) + 1];
-    w->changes[0] = w->shuffled[0];
-    for (size_t i = 1; i < size; i++)
-        w->changes[i] = (uint8_t)(w->shuffled[i] - w->shuffled[i - 1] + 128);
-    size_t zipped = libdeflate_zlib_compress(w->packer, w->changes, size, w->zipped, size - 1);
-    if (zipped == 0) memcpy(w->zipped, from, size);
+    writer *w = encoder->encoding_user_data;
+    if (encoder->packed_bytes > w->chunk_bytes) return EXR_ERR_INVALID_ARGUMENT;
+    size_t zipped = 0;
+    exr_result_t r = exr_zip_pack(&w->zip, encoder->packed_buffer, encoder->packed_bytes, w->zipped, &zipped);
     encoder->compressed_buffer = w->zipped;
     encoder->compressed_alloc_size = w->chunk_bytes;
-    encoder->compressed_bytes = zipped ? zipped : size;
-    return EXR_ERR_SUCCESS;
+    encoder->compressed_bytes = zipped;
+    return r;
 }
 
 static exr_result_t write_chunks(writer *w, int lines_per_chunk)
@@ -148,24 +136,17 @@ static exr_result_t write_pixels(writer *w)
     int32_t lines = 0;
     exr_result_t r = exr_get_scanlines_per_chunk(w->context, 0, &lines);
     if (r != EXR_ERR_SUCCESS) return r;
-    enum { LEVEL = 3 };
     size_t halves = 0;
     for (size_t i = 0; i < w->channel_count; i++)
         halves += (size_t)halves_of(&w->channels[i]);
     w->chunk_bytes = (size_t)lines * (size_t)w->width * halves * sizeof *w->samples;
     size_t room = w->chunk_bytes > 0 ? w->chunk_bytes : 1;
     w->samples = malloc(room);
-    w->shuffled = malloc(room);
-    w->changes = malloc(room);
     w->zipped = malloc(room);
-    w->packer = libdeflate_alloc_compressor(LEVEL);
-    bool enough = w->samples && w->shuffled && w->changes && w->zipped && w->packer;
-    r = enough ? write_chunks(w, lines) : EXR_ERR_OUT_OF_MEMORY;
+    r = w->samples && w->zipped ? write_chunks(w, lines) : EXR_ERR_OUT_OF_MEMORY;
     free(w->samples);
-    free(w->shuffled);
-    free(w->changes);
     free(w->zipped);
-    libdeflate_free_compressor(w->packer);
+    exr_zip_free(&w->zip);
     return r;
 }
 
