@@ -156,8 +156,8 @@ typedef struct merlin_surface {
     int lights_near;      /* MERLIN_STEREO_UNCALIBRATED: whether the lights also have positions, in the unit of
                            * camera.distance (1 if that is unknown) */
     int strengths_unsure; /* MERLIN_STEREO_SEMI: the object is too flat, or the pictures are too few (3), to determine
-                           * the lights' intensities: normals may have large errors. MERLIN_STEREO_UNCALIBRATED with
-                           * what a network expects: the lights do not seem to be equally strong */
+                           * the lights' intensities: normals may have large errors. MERLIN_STEREO_UNCALIBRATED:
+                           * the lights do not seem to be equally strong */
     int distance_unsure;  /* MERLIN_STEREO_NEAR without a known distance: the lights are too few, or too similar, to
                            * determine it: normals may have large errors */
     int lights_unsure;    /* MERLIN_STEREO_UNCALIBRATED: the pictures or the object's outline hardly determine them:

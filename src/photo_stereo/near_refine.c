@@ -23,6 +23,7 @@ static merlin_capture lit_capture(const near_refinement *n, const merlin_surface
     merlin_capture c = *n->capture;
     c.lighting = MERLIN_NEAR_LIGHTS;
     c.light = found->lights;
+    c.intensities_known = true;
     if (!(c.camera.distance > 0)) c.camera.distance = 1;
     return c;
 }
@@ -120,12 +121,13 @@ static status solve_near(const near_refinement *n, merlin_surface *found)
     const merlin_stereo_params how = {.method = MERLIN_STEREO_NEAR, .unchecked = 1, .stop = n->stop};
     const merlin_capture c = lit_capture(n, found);
     const pst_guide guide = {begin, n->network, true};
-    const int unsure = found->lights_unsure;
+    const int unsure = found->lights_unsure, unequal = found->strengths_unsure;
     merlin_surface solved = {0};
     status s = pst_solve_guided(&c, &how, &guide, &solved);
     if (s != OK) return s;
     replace(found, &solved);
     found->lights_unsure = unsure;
+    found->strengths_unsure = unequal;
     return OK;
 }
 
@@ -133,6 +135,8 @@ status near_refine(const near_refinement *n, merlin_surface *found)
 {
     const int count = n->capture->count;
     if (!n->network || !found->lights_near || count < FEWEST) return OK;
+    /* under doubtful lights of any strength the network makes a surface that speaks for them */
+    if (found->lights_unsure && found->strengths_unsure) return OK;
     status s = count < PLENTY ? find_again(n, found) : OK;
     if (s != OK || found->lights_unsure) return s;
     if (count < PST_FEWEST_UNKNOWN) return take_network(n, found);

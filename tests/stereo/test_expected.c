@@ -14,12 +14,17 @@ typedef struct expectation {
     vec3 light[LIGHTS];
 } expectation;
 
+static float share_of(int k, float least)
+{
+    return least + (1 - least) * (float)(k * 7 % 5) / 4;
+}
+
 /* Dims the pictures to shares from `least` to 1, as weaker lights or a camera that is left to itself do. */
 static void dim_some(merlin_capture *c, float least)
 {
     for (int k = 0; k < LIGHTS; k++)
         for (int i = 0; i < c->width * c->height * c->channels; i++)
-            c->picture[k][i] = (uint16_t)((float)c->picture[k][i] * (least + (1 - least) * (float)(k * 7 % 5) / 4));
+            c->picture[k][i] = (uint16_t)((float)c->picture[k][i] * share_of(k, least));
     pst_capture_forget_lights(c);
     c->intensities_known = false;
 }
@@ -252,6 +257,54 @@ static void few_pictures_of_several_objects_are_unsure(void **state)
     capture_drop(&c);
 }
 
+/* ---- many near lights ---- */
+
+static vec3 lamp(int i)
+{
+    const float turn = 0.5f + 6.2831853f * (float)i / LIGHTS, aside = 0.5f + 0.1f * (float)(i % 2);
+    return vec3_make(aside * cosf(turn), aside * sinf(turn), -0.25f + 0.1f * (float)(i % 3));
+}
+
+/* Returns the largest error of the lights' strengths, relative to their mean. */
+static float worst_strength(const merlin_surface *s, float least)
+{
+    float mean = 0, worst = 0;
+    for (int k = 0; k < LIGHTS; k++)
+        mean += share_of(k, least) / LIGHTS;
+    for (int k = 0; k < LIGHTS; k++)
+        worst = fmaxf(worst, fabsf(s->lights[k].intensity[0] * mean / share_of(k, least) - 1));
+    return worst;
+}
+
+/* Exposures that differ are not taken for distances, and those that do not are not taken for such. */
+static void strengths_of_near_lights_are_found(void **state)
+{
+    (void)state;
+    merlin_capture c;
+    merlin_surface s;
+    ball_expectation e;
+    const float distance = ball_capture(&c, LIGHTS, lamp, 0, 0);
+    c.camera.distance = distance;
+    c.lighting = MERLIN_UNKNOWN_LIGHTS;
+    ball_expect(&c, lamp, 0.6f, &e);
+    const pst_expected expected = {
+        .normal = &e.normal, .depth = &e.depth, .light = e.light, .compared = e.light, .near = e.near};
+    const solution even = solve_with(&c, &expected);
+    assert_true(even.angle < 3);
+    assert_false(even.unequal);
+    dim_some(&c, 0.4f);
+    assert_int_equal(pst_solve_expecting(&c, &unknown, &expected, &s), OK);
+    print_message("dimmed: %.2f degrees, strengths off by up to %.3f\n", mean_angle(&c, &s.normal),
+                  (double)worst_strength(&s, 0.4f));
+    assert_true(s.lights_near && s.strengths_unsure && !s.lights_unsure);
+    assert_true(mean_angle(&c, &s.normal) < 3);
+    assert_true(worst_strength(&s, 0.4f) < 0.15f);
+    merlin_surface_free(&s);
+    img_free(&e.normal);
+    img_free(&e.depth);
+    capture_drop(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -261,6 +314,7 @@ int main(void)
         cmocka_unit_test(lights_that_nobody_expects_are_unsure),
         cmocka_unit_test(few_pictures_correct_what_is_expected),
         cmocka_unit_test(few_pictures_of_several_objects_are_unsure),
+        cmocka_unit_test(strengths_of_near_lights_are_found),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

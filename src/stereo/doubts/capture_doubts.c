@@ -196,6 +196,19 @@ static void report_reading(const merlin_capture *c, warnings *out)
     warnings_append(out, &c->noticed);
 }
 
+static void report_strengths(const merlin_surface *s, warnings *out)
+{
+    if (s->method == MERLIN_STEREO_UNCALIBRATED)
+        warnings_add(out, "strengths_unequal",
+                     "the lights do not seem equally strong, or the pictures' exposures were not the same, and normals "
+                     "may be many degrees off: fix the exposure, or list the strengths in light_intensities.txt");
+    else
+        warnings_add(
+            out, "strengths_unsure",
+            "the object is too flat or the pictures are too few to tell how strong the lights are, and normals "
+            "may be many degrees off: state the strengths in light_intensities.txt");
+}
+
 static void report_solution(const merlin_capture *c, const merlin_surface *s, warnings *out)
 {
     if (c->about_object)
@@ -207,11 +220,7 @@ static void report_solution(const merlin_capture *c, const merlin_surface *s, wa
             out, "lights_in_order",
             "none of the pictures that the lights' list names is there: its lights were taken in the order of the "
             "pictures' names");
-    if (s->strengths_unsure)
-        warnings_add(
-            out, "strengths_unsure",
-            "the object is too flat or the pictures are too few to tell how strong the lights are, and normals "
-            "may be many degrees off: state the strengths in light_intensities.txt");
+    if (s->strengths_unsure) report_strengths(s, out);
     if (s->distance_unsure)
         warnings_add(out, "distance_unsure",
                      "these lights do not tell how far the object is, and normals may be many degrees off: state it by "

@@ -147,15 +147,27 @@ static status allocate_values(bundle *b)
     b->value = malloc(2 * values * sizeof *b->value);
     b->log_depth = calloc((size_t)b->corners, sizeof *b->log_depth);
     b->position = calloc((size_t)b->lights, sizeof *b->position);
-    if (!b->value || !b->log_depth || !b->position)
+    b->strength = calloc((size_t)b->lights, sizeof *b->strength);
+    if (!b->value || !b->log_depth || !b->position || !b->strength)
         return fail(MERLIN_NO_MEMORY, "no memory for %d cells under %d lights", b->cells, b->lights);
     b->precision = b->value + values;
+    for (int k = 0; k < b->lights; k++)
+        b->strength[k] = 1;
     return OK;
 }
 
-status bundle_new(const pst_problem *p, const pinhole *camera, int across, bundle *out)
+bool bundle_is_near(const bundle *b)
 {
-    *out = (bundle){.problem = p, .camera = *camera, .lights = p->capture->count};
+    return b->kind == BUNDLE_NEAR_EQUAL || b->kind == BUNDLE_NEAR_FREE;
+}
+
+status bundle_new(const pst_problem *p, const pinhole *camera, bundle_kind kind, int across, bundle *out)
+{
+    *out = (bundle){.problem = p,
+                    .kind = kind,
+                    .camera = *camera,
+                    .lights = p->capture->count,
+                    .light_unknowns = kind == BUNDLE_NEAR_FREE ? 4 : 3};
     place_grid(out, across);
     size_t cells = (size_t)out->columns * (size_t)out->rows;
     size_t corners = (size_t)(out->columns + 1) * (size_t)(out->rows + 1);
@@ -181,6 +193,7 @@ void bundle_free(bundle *b)
     free(b->value);
     free(b->log_depth);
     free(b->position);
+    free(b->strength);
     if (b->expected) {
         free(b->expected->place);
         free(b->expected->sure);
@@ -215,6 +228,7 @@ float bundle_depth(const bundle *b, float x, float y)
 void bundle_take(bundle *b, const bundle *from)
 {
     memcpy(b->position, from->position, (size_t)b->lights * sizeof *b->position);
+    memcpy(b->strength, from->strength, (size_t)b->lights * sizeof *b->strength);
     for (int row = 0; row <= b->rows; row++)
         for (int column = 0; column <= b->columns; column++) {
             int n = corner_number(b, column, row);

@@ -60,7 +60,7 @@ static void expect_lights(const bundle *b, bundle_expected *e)
     for (int k = 0; k < b->lights; k++) {
         const float sure = vec3_length(of->compared[k]);
         const float told = fminf(fmaxf(1 / fmaxf(of->near[k], 1e-6f), nearest), farthest);
-        const float distance = b->kind == BUNDLE_NEAR ? told : BUNDLE_AFAR * b->radius;
+        const float distance = bundle_is_near(b) ? told : BUNDLE_AFAR * b->radius;
         const vec3 way = sure > 0 ? vec3_scale(of->compared[k], 1 / sure) : vec3_make(0, 0, 1);
         e->sure[k] = fminf(sure, 1);
         e->place[k] = vec3_fma(b->centre, distance, way);

@@ -6,9 +6,9 @@
 /* Weights of priors in units of an outlier: for the logarithm of a light's distance relative to the lights' mean; for a
  * bend and a twist of slope 1 between neighbouring cells, each times the number of lights; for the mean depth. */
 static const double equal_distance = 1, bending = 0.003, twisting = 0.02, fixed_depth = 1e5;
-/* Factor of the first for distant lights of equal strength; logarithm of a distance at which it is half given up for
- * those of others. */
-static const double equal_strength = 1000, uneven = 0.1;
+/* Factor of the first for distant lights of equal strength, and for the logarithms of near lights' free strengths;
+ * logarithm at which it is half given up for free ones. */
+static const double equal_strength = 1000, free_strength = 0.1, uneven = 0.1;
 /* The same for what is expected, of eight pictures: a slope of 1, each time per cell; a direction, times 1 minus the
  * cosine, twice; the logarithm of a distance. Powers of the number of pictures by which more of them reduce it, and
  * fewer raise it: what is expected errs the same way everywhere, and many pictures know better
@@ -103,14 +103,14 @@ static double add_expected_lights(const bundle *b, bundle_equations *y)
     double cost = 0;
     for (int k = 0; k < b->lights; k++) {
         const double weight = trusted * (double)e->sure[k] * b->cells;
-        const double far = b->kind == BUNDLE_NEAR ? expected_distance * weight : 0;
+        const double far = bundle_is_near(b) ? expected_distance * weight : 0;
         const vec3 from = vec3_sub(b->position[k], b->centre), wanted = vec3_sub(e->place[k], b->centre);
         const vec3 aim = vec3_normalize(wanted);
         const double cosine = (double)vec3_dot(aim, vec3_normalize(from));
         const double off = log((double)vec3_length(from) / (double)vec3_length(wanted));
         cost += 2 * expected_direction * weight * (1 - cosine) + far * off * off;
         if (!y) continue;
-        const size_t n = (size_t)y->size, at = (size_t)b->corners + 3 * (size_t)k;
+        const size_t n = (size_t)y->size, at = bundle_light_row(b, k);
         for (size_t i = 0; i < 2; i++) {
             y->right[at + i] += expected_direction * weight * (double)vec3_dot(aim, vec3_normalize(y->turn[3 * k + i]));
             y->matrix[(at + i) * n + at + i] += expected_direction * weight * fmax(cosine, least_curved);
@@ -128,10 +128,10 @@ static void add_distance(const bundle *b, bundle_equations *y, int light, double
     const double share = 1.0 / b->lights;
     for (int i = 0; i < b->lights; i++) {
         const double own = (i == light) - share;
-        const size_t at = (size_t)b->corners + 3 * (size_t)i + 2;
+        const size_t at = bundle_light_row(b, i) + 2;
         y->right[at] -= weight * off * own;
         for (int j = 0; j <= i; j++)
-            y->matrix[at * (size_t)y->size + (size_t)(b->corners + 3 * j + 2)] += weight * own * ((j == light) - share);
+            y->matrix[at * (size_t)y->size + bundle_light_row(b, j) + 2] += weight * own * ((j == light) - share);
     }
 }
 
@@ -146,6 +146,23 @@ static double add_equal_distances(const bundle *b, bundle_equations *y)
         const double off = (double)log_distance(b, k) - mean, ratio = off * off / (uneven * uneven);
         cost += prior * (strict ? off * off : uneven * uneven * log1p(ratio));
         if (y) add_distance(b, y, k, off, prior / (strict ? 1 : 1 + ratio));
+    }
+    return cost;
+}
+
+/* Adds what near lights' free strengths differ from 1 by, in logarithms. */
+static double add_equal_strengths(const bundle *b, bundle_equations *y)
+{
+    const double prior = equal_distance * b->cells * free_strength;
+    double cost = 0;
+    for (int k = 0; k < b->lights; k++) {
+        const double off = log((double)b->strength[k]), ratio = off * off / (uneven * uneven);
+        cost += prior * uneven * uneven * log1p(ratio);
+        if (!y) continue;
+        const size_t at = bundle_light_row(b, k) + 3;
+        const double weight = prior / (1 + ratio);
+        y->right[at] -= weight * off;
+        y->matrix[at * (size_t)y->size + at] += weight;
     }
     return cost;
 }
@@ -166,6 +183,7 @@ double bundle_add_priors(const bundle *b, bundle_equations *y)
             y->matrix[i * n + j] += share;
     }
     f.cost += add_equal_distances(b, y);
+    if (b->kind == BUNDLE_NEAR_FREE) f.cost += add_equal_strengths(b, y);
     if (b->expected) f.cost += add_expected_lights(b, y);
     return f.cost;
 }

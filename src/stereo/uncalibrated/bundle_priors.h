@@ -5,8 +5,8 @@
 
 #include "stereo/uncalibrated/bundle.h"
 
-/* Equations of a step: unknowns are the corners, then three per light: two rotations about the centre (radians), and
- * the logarithm of its distance. */
+/* Equations of a step: unknowns are the corners, then light_unknowns per light: two rotations about the centre
+ * (radians), the logarithm of its distance and, if it is free, that of its strength. */
 typedef struct bundle_equations {
     int size;
     size_t corners;
@@ -16,7 +16,14 @@ typedef struct bundle_equations {
     vec3 *turn; /* lights × 3: derivatives of a light's position by its unknowns */
     float *old_depth, *old_albedo;
     vec3 *old_position;
+    float *old_strength;
 } bundle_equations;
+
+/* Returns the index of a light's first unknown. */
+static inline size_t bundle_light_row(const bundle *b, int light)
+{
+    return (size_t)b->corners + (size_t)b->light_unknowns * (size_t)light;
+}
 
 /* Adds the priors, and returns their cost; y NULL: only that. matrix is half the second derivative. */
 double bundle_add_priors(const bundle *b, bundle_equations *y);

@@ -85,7 +85,7 @@ static void fit_albedos(bundle *b, float width)
         patch p = patch_of(b, c);
         float product = 0, square = 0;
         for (size_t k = 0; k < lights; k++) {
-            float s = seen_shading(shading(&p, b->position[k]), v[k], c->level);
+            float s = seen_shading(b->strength[k] * shading(&p, b->position[k]), v[k], c->level);
             float w = c->albedo > 0 ? loss_of(v[k] - c->albedo * s, q[k], width).weight : q[k];
             product += w * s * v[k];
             square += w * s * s;
@@ -102,6 +102,36 @@ void bundle_fit_albedo(bundle *b)
         fit_albedos(b, 1);
 }
 
+/* Fits a light's strength to its picture. */
+static float strength_of(const bundle *b, int light)
+{
+    float product = 0, square = 0;
+    for (int i = 0; i < b->cells; i++) {
+        const bundle_cell *c = &b->cell[i];
+        const size_t at = (size_t)i * (size_t)b->lights + (size_t)light;
+        const patch p = patch_of(b, c);
+        const float s = fmaxf(c->albedo * shading(&p, b->position[light]), 0);
+        product += b->precision[at] * s * b->value[at];
+        square += b->precision[at] * s * s;
+    }
+    return square > 0 ? fmaxf(product / square, 1e-3f) : 1;
+}
+
+void bundle_fit_strengths(bundle *b)
+{
+    bundle_fit_albedo(b);
+    for (int round = 0; round < 3; round++) {
+        float mean = 0;
+        for (int k = 0; k < b->lights; k++) {
+            b->strength[k] = strength_of(b, k);
+            mean += logf(b->strength[k]) / (float)b->lights;
+        }
+        for (int k = 0; k < b->lights; k++)
+            b->strength[k] *= expf(-mean);
+        bundle_fit_albedo(b);
+    }
+}
+
 /* ---- values ---- */
 
 static double cost_of(const bundle *b, float width)
@@ -114,7 +144,8 @@ static double cost_of(const bundle *b, float width)
         patch p = patch_of(b, c);
         float sum = 0;
         for (size_t k = 0; k < lights; k++) {
-            float r = v[k] - c->albedo * seen_shading(shading(&p, b->position[k]), v[k], c->level);
+            float s = b->strength[k] * shading(&p, b->position[k]);
+            float r = v[k] - c->albedo * seen_shading(s, v[k], c->level);
             float t = r * r * q[k] / (width * width);
             sum += t / (1 + t);
         }
@@ -130,7 +161,8 @@ double bundle_light_cost(const bundle *b, int light, vec3 place, float width)
         const bundle_cell *c = &b->cell[i];
         size_t at = (size_t)i * (size_t)b->lights + (size_t)light;
         patch p = patch_of(b, c);
-        float r = b->value[at] - c->albedo * seen_shading(shading(&p, place), b->value[at], c->level);
+        float s = b->strength[light] * shading(&p, place);
+        float r = b->value[at] - c->albedo * seen_shading(s, b->value[at], c->level);
         float t = r * r * b->precision[at] / (width * width);
         cost += (double)(t / (1 + t));
     }
@@ -169,14 +201,14 @@ static vec3 shading_slopes(const bundle *b, const bundle_cell *c, const patch *p
 
 /* Derivatives of one value by the cell's corners, the light's unknowns and the albedo. */
 typedef struct slopes {
-    float corner[4], light[3], albedo;
+    float corner[4], light[4], albedo;
 } slopes;
 
 static void add_value(const bundle *b, bundle_equations *y, const bundle_cell *c, int light, const slopes *j, loss w,
                       float r)
 {
-    size_t n = (size_t)y->size, at = (size_t)b->corners + 3 * (size_t)light;
-    double *coupling = y->coupling + 4 + 3 * (size_t)light;
+    const size_t n = (size_t)y->size, at = bundle_light_row(b, light), unknowns = (size_t)b->light_unknowns;
+    double *coupling = y->coupling + 4 + unknowns * (size_t)light;
     for (int i = 0; i < 4; i++) {
         double own = (double)(w.curvature * j->corner[i]);
         y->right[c->corner[i]] += (double)(w.weight * r * j->corner[i]);
@@ -185,7 +217,7 @@ static void add_value(const bundle *b, bundle_equations *y, const bundle_cell *c
             if (c->corner[k] <= c->corner[i])
                 y->matrix[(size_t)c->corner[i] * n + (size_t)c->corner[k]] += own * (double)j->corner[k];
     }
-    for (size_t i = 0; i < 3; i++) {
+    for (size_t i = 0; i < unknowns; i++) {
         double own = (double)(w.curvature * j->light[i]), *row = y->matrix + (at + i) * n;
         y->right[at + i] += (double)(w.weight * r * j->light[i]);
         coupling[i] += own * (double)j->albedo;
@@ -207,7 +239,7 @@ static void eliminate_albedo(const bundle *b, bundle_equations *y, const bundle_
             if (c->corner[k] <= c->corner[i])
                 y->matrix[(size_t)c->corner[i] * n + (size_t)c->corner[k]] -= q[i] * q[k] / square;
     }
-    for (int i = 0; i < 3 * b->lights; i++) {
+    for (int i = 0; i < b->light_unknowns * b->lights; i++) {
         double *row = y->matrix + (size_t)(b->corners + i) * n, own = q[4 + i] / square;
         if (own == 0) continue;
         y->right[b->corners + i] -= own * left;
@@ -225,18 +257,19 @@ static void add_cell(const bundle *b, bundle_equations *y, int i, float width)
     const float *v = b->value + (size_t)i * lights, *q = b->precision + (size_t)i * lights;
     patch p = patch_of(b, c);
     double square = 0, left = 0;
-    memset(y->coupling, 0, (4 + 3 * lights) * sizeof *y->coupling);
+    memset(y->coupling, 0, (4 + (size_t)b->light_unknowns * lights) * sizeof *y->coupling);
     for (int k = 0; k < b->lights; k++) {
-        float s = shading(&p, b->position[k]);
+        const float power = c->albedo * b->strength[k], s = b->strength[k] * shading(&p, b->position[k]);
         if (q[k] <= 0 || seen_shading(s, v[k], c->level) != s) continue;
         float r = v[k] - c->albedo * s;
         loss w = loss_of(r, q[k], width);
         slopes j = {.albedo = s};
         vec3 by_light = shading_slopes(b, c, &p, b->position[k], j.corner);
         for (int t = 0; t < 4; t++)
-            j.corner[t] *= c->albedo;
+            j.corner[t] *= power;
         for (int t = 0; t < 3; t++)
-            j.light[t] = c->albedo * vec3_dot(by_light, y->turn[3 * k + t]);
+            j.light[t] = power * vec3_dot(by_light, y->turn[3 * k + t]);
+        j.light[3] = c->albedo * s;
         add_value(b, y, c, k, &j, w, r);
         square += (double)(w.curvature * s * s);
         left += (double)(w.weight * r * s);
@@ -261,7 +294,7 @@ static bool solve_step(bundle_equations *y, double damping)
 
 static float within_limits(const bundle *b, float distance)
 {
-    const bool near = b->kind == BUNDLE_NEAR;
+    const bool near = bundle_is_near(b);
     return fminf(fmaxf(distance, (near ? nearest : nearest_afar) * b->radius),
                  (near ? farthest : farthest_afar) * b->radius);
 }
@@ -270,17 +303,19 @@ static void take_step(bundle *b, const bundle_equations *y)
 {
     memcpy(y->old_depth, b->log_depth, (size_t)b->corners * sizeof *y->old_depth);
     memcpy(y->old_position, b->position, (size_t)b->lights * sizeof *y->old_position);
+    memcpy(y->old_strength, b->strength, (size_t)b->lights * sizeof *y->old_strength);
     for (int i = 0; i < b->cells; i++)
         y->old_albedo[i] = b->cell[i].albedo;
     for (int i = 0; i < b->corners; i++)
         b->log_depth[i] += clamp((float)y->step[i], -0.3f, 0.3f);
     for (int k = 0; k < b->lights; k++) {
-        const double *d = y->step + b->corners + 3 * k;
+        const double *d = y->step + bundle_light_row(b, k);
         vec3 from = vec3_sub(b->position[k], b->centre), to = from;
         to = vec3_fma(to, clamp((float)d[0], -0.5f, 0.5f), y->turn[3 * k]);
         to = vec3_fma(to, clamp((float)d[1], -0.5f, 0.5f), y->turn[3 * k + 1]);
         const float distance = vec3_length(from) * expf(clamp((float)d[2], -0.5f, 0.5f));
         b->position[k] = vec3_fma(b->centre, within_limits(b, distance), vec3_normalize(to));
+        if (b->kind == BUNDLE_NEAR_FREE) b->strength[k] *= expf(clamp((float)d[3], -0.5f, 0.5f));
     }
 }
 
@@ -288,6 +323,7 @@ static void undo_step(bundle *b, const bundle_equations *y)
 {
     memcpy(b->log_depth, y->old_depth, (size_t)b->corners * sizeof *y->old_depth);
     memcpy(b->position, y->old_position, (size_t)b->lights * sizeof *y->old_position);
+    memcpy(b->strength, y->old_strength, (size_t)b->lights * sizeof *y->old_strength);
     for (int i = 0; i < b->cells; i++)
         b->cell[i].albedo = y->old_albedo[i];
 }
@@ -313,11 +349,11 @@ static bool descend(bundle *b, bundle_equations *y, float width, double *damping
 
 static status system_new(const bundle *b, bundle_equations *y)
 {
-    size_t lights = (size_t)b->lights, n = (size_t)b->corners + 3 * lights;
+    size_t lights = (size_t)b->lights, n = bundle_light_row(b, b->lights);
     *y = (bundle_equations){
         .size = (int)n, .corners = (size_t)b->corners, .matrix = malloc((2 * n * n + 3 * n + 4) * sizeof *y->matrix)};
     y->turn = malloc(4 * lights * sizeof *y->turn);
-    y->old_depth = malloc((size_t)(b->corners + b->cells) * sizeof *y->old_depth);
+    y->old_depth = malloc((size_t)(b->corners + b->cells + b->lights) * sizeof *y->old_depth);
     if (!y->matrix || !y->turn || !y->old_depth) return fail(MERLIN_NO_MEMORY, "no memory for %zu unknowns", n);
     y->damped = y->matrix + n * n;
     y->right = y->damped + n * n;
@@ -325,6 +361,7 @@ static status system_new(const bundle *b, bundle_equations *y)
     y->coupling = y->step + n;
     y->old_position = y->turn + 3 * lights;
     y->old_albedo = y->old_depth + b->corners;
+    y->old_strength = y->old_albedo + b->cells;
     return OK;
 }
 

@@ -20,9 +20,6 @@ enum { STEPS = 6, BLOCK = 64 };
  * a ball, 0.01 to 0.26 of rendered objects with deep shadows; 0.2 to 0.4 of pictures of two of them, except 0.12 of one
  * each of cat and owl; 0.17 to 0.5 of pictures that moved. */
 static const double unexplained = 0.18;
-/* Ratio of costs from which on distant lights are not of one strength. Measured of two to six pictures of these: 1.06
- * to 1.26 as they were (1.6 of two of the ball), 1.5 to 4.3 exposed up to 2.5 times as much as others. */
-static const double far_better = 1.5;
 /* Share of the ordinary value below which a picture is in shadow. */
 static const float dark = 0.1f;
 
@@ -106,63 +103,22 @@ static void fit_block(void *context, size_t block)
     }
 }
 
-/* Lights with the surface that was found with them. */
-typedef struct few_lights {
-    merlin_light *light;
-    img depth;
-    pst_near_bend bend;
-} few_lights;
-
-static void few_lights_free(few_lights *f)
-{
-    free(f->light);
-    img_free(&f->depth);
-    img_free(&f->bend.normal);
-}
-
-static status few_lights_new(const pst_problem *p, few_lights *out)
-{
-    *out = (few_lights){.light = calloc((size_t)p->capture->count, sizeof *out->light)};
-    return out->light ? OK : fail(MERLIN_NO_MEMORY, "no memory for %d lights", p->capture->count);
-}
-
-/* Finds distant lights of one strength or, if others explain the pictures far better, of any. */
-static status find_afar(const pst_problem *p, few_lights *out, bool *uneven)
-{
-    const pinhole *camera = &p->capture->camera;
-    few_lights other = {0};
-    status s = pst_find_lights_afar(p, camera, true, out->light, &out->depth, &out->bend);
-    if (s == OK) s = few_lights_new(p, &other);
-    if (s == OK) s = pst_find_lights_afar(p, camera, false, other.light, &other.depth, &other.bend);
-    *uneven = s == OK && out->bend.cost_of_value > far_better * other.bend.cost_of_value;
-    if (*uneven) {
-        const few_lights better = other;
-        other = *out;
-        *out = better;
-    }
-    few_lights_free(&other);
-    return s;
-}
-
 status pst_solve_few(const pst_problem *p, bool camera_known, merlin_surface *out)
 {
-    few_lights lights;
-    bool uneven = false;
-    status s = few_lights_new(p, &lights);
-    if (s == OK)
-        s = camera_known ? pst_find_near_lights(p, &p->capture->camera, lights.light, &lights.depth, &lights.bend)
-                         : find_afar(p, &lights, &uneven);
+    pst_near_found lights;
+    status s = camera_known ? pst_find_near_lights(p, &p->capture->camera, &lights)
+                            : pst_find_lights_afar(p, &p->capture->camera, &lights);
     pst_problem found = *p;
     found.light = lights.light;
-    few_job job = {&found, &lights.depth, &lights.bend.normal, out};
+    few_job job = {&found, &lights.depth, &lights.bent, out};
     if (s == OK) parallel_for((p->pixel_count + BLOCK - 1) / BLOCK, fit_block, &job);
     const pst_integration how = {.prior = &lights.depth, .prior_weight = PST_KEEP_DEPTH};
     if (s == OK) s = pst_integrate(&out->normal, &p->capture->mask, &p->capture->camera, &how, &out->depth);
     img_free(&out->spread); /* that of the pictures would not include the prior's errors, which are larger */
     out->lights = lights.light;
-    out->lights_unsure = lights.bend.cost_of_value > unexplained;
-    out->strengths_unsure = uneven;
+    out->lights_unsure = lights.cost_of_value > unexplained;
+    out->strengths_unsure = lights.uneven;
     lights.light = NULL;
-    few_lights_free(&lights);
+    pst_near_found_free(&lights);
     return s;
 }

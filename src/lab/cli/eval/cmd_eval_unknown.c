@@ -28,6 +28,7 @@ static const char help[] =
     "  --nfps W         weights of the network of near lights (default: merlin-nfps, where it is there)\n"
     "  --count N        only the first N objects\n"
     "  --views N        maps as merlin estimate --views N makes them (default 4, as there)\n"
+    "  --dim SHARE      expose each picture by chance to a share from this one to 1, as a camera left to itself does\n"
     "      --json       report on standard output as JSON\n"
     "  -t, --threads N  how many threads work (default: one a processor)\n"
     "  -q, --quiet      no progress\n"
@@ -49,6 +50,7 @@ static status parse(int argc, char **argv, request *r)
         {"seed", .whole = &r->options.seed, .low = 0, .high = 2147483647},
         {"count", .count = &r->options.count, .low = 1, .high = 1000000},
         {"views", .integer = &r->options.views, .low = 1, .high = 8},
+        {"dim", .real = &r->options.dim, .low = 0, .high = 1},
         {"json", .flag = &r->json},
         {"quiet", 'q', .flag = &r->options.quiet},
         {"help", 'h', .flag = &r->help},

@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "base/progress.h"
+#include "base/rng.h"
 #include "estimate/photo/model_pair.h"
 #include "lab/eval/metrics/metrics.h"
 #include "lab/eval/metrics/normal_frame.h"
@@ -45,6 +46,18 @@ static status choose(const merlin_capture *all, int count, merlin_capture *out)
     for (int i = 0; i < count && out->light; i++)
         out->light[i].intensity[0] = out->light[i].intensity[1] = out->light[i].intensity[2] = 1;
     return out->picture && out->light ? OK : fail(MERLIN_NO_MEMORY, "no memory for %d pictures", count);
+}
+
+/* Exposes the pictures to shares from `least` to 1, as a camera that is left to itself does. */
+static void dim_pictures(float least, size_t index, merlin_capture *c)
+{
+    const size_t values = (size_t)c->width * (size_t)c->height * (size_t)c->channels;
+    for (int k = 0; k < c->count; k++) {
+        rng r = rng_at(index, (uint64_t)k, 0);
+        const float share = rng_range(&r, least, 1);
+        for (size_t i = 0; i < values; i++)
+            c->picture[k][i] = (uint16_t)(share * (float)c->picture[k][i] + 0.5f);
+    }
 }
 
 /* Maps to compare with the truth; without albedo where a solver's has another meaning. */
@@ -170,6 +183,7 @@ static status measure_object(run *r, const char *path, size_t index, unknown_obj
     stereo_object o;
     status s = path ? stereo_object_read(path, &o) : render(r, index, &o);
     if (s != OK) return s;
+    if (r->options->dim > 0) dim_pictures(r->options->dim, index, &o.capture);
     snprintf(out->name, sizeof out->name, "%s", o.name);
     out->pictures = o.capture.count;
     for (int row = 0; row < UNKNOWN_ROWS; row++) {

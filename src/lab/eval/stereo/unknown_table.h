@@ -46,6 +46,7 @@ typedef struct unknown_options {
     uint64_t seed;                   /* of rendered objects */
     size_t count;                    /* objects at most; 0: all, or UNKNOWN_RENDERED */
     int views;
+    float dim; /* least share to which pictures are exposed by chance; 0 or 1: all alike */
     bool quiet;
     int (*stopped)(void); /* asked between solutions; NULL: never */
 } unknown_options;
