@@ -29,7 +29,9 @@ status ranks_open_mpi(ranks **out)
     if (!plugin) {
         const char *why = dlerror();
         return fail(MERLIN_DEVICE_FAILED, "there is no MPI: %s",
-                    why ? why : "install openmpi-bin and libopenmpi-dev and build merlin again");
+                    why ? why
+                        : "merlin_mpi.so is not beside the program; copy it there, or install openmpi-bin and "
+                          "libopenmpi-dev and build merlin again");
     }
     /* dlsym returns object pointers, and C has no conversion to function pointers */
     ranks *(*begin)(void);
