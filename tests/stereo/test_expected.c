@@ -305,6 +305,26 @@ static void strengths_of_near_lights_are_found(void **state)
     capture_drop(&c);
 }
 
+/* Free strengths explain much, so that they are believed only with a surface that is about what was expected. */
+static void strengths_that_contradict_what_is_expected_are_unsure(void **state)
+{
+    (void)state;
+    merlin_capture c;
+    ball_expectation e;
+    const float distance = ball_capture(&c, LIGHTS, lamp, 0, 0);
+    c.camera.distance = distance;
+    c.lighting = MERLIN_UNKNOWN_LIGHTS;
+    ball_expect(&c, lamp, -0.6f, &e); /* a bowl */
+    dim_some(&c, 0.4f);
+    const pst_expected expected = {
+        .normal = &e.normal, .depth = &e.depth, .light = e.light, .compared = e.light, .near = e.near};
+    const solution found = solve_with(&c, &expected);
+    assert_true(found.unequal && found.unsure);
+    img_free(&e.normal);
+    img_free(&e.depth);
+    capture_drop(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -315,6 +335,7 @@ int main(void)
         cmocka_unit_test(few_pictures_correct_what_is_expected),
         cmocka_unit_test(few_pictures_of_several_objects_are_unsure),
         cmocka_unit_test(strengths_of_near_lights_are_found),
+        cmocka_unit_test(strengths_that_contradict_what_is_expected_are_unsure),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
