@@ -18,8 +18,7 @@ static int torches;
 
 static vec3 torch(int i)
 {
-    const float turn = 0.5f + 6.2831853f * (float)i / (float)torches, aside = 0.5f + 0.1f * (float)(i % 2);
-    return vec3_make(aside * cosf(turn), aside * sinf(turn), -0.25f + 0.1f * (float)(i % 3));
+    return ball_lamp(i, torches);
 }
 
 typedef struct fixture {
@@ -31,23 +30,14 @@ typedef struct fixture {
 static void photograph(int count, bool lights_alone, fixture *f)
 {
     torches = count;
-    const float distance = ball_capture(&f->capture, count, torch, 0, 0);
-    f->capture.camera.distance = distance;
-    f->capture.lighting = MERLIN_UNKNOWN_LIGHTS;
-    ball_expect(&f->capture, torch, 0.6f, &f->guess);
-    f->expected = (pst_expected){.normal = &f->guess.normal,
-                                 .depth = &f->guess.depth,
-                                 .light = f->guess.light,
-                                 .compared = f->guess.light,
-                                 .near = f->guess.near,
-                                 .lights_alone = lights_alone};
+    ball_photograph(&f->capture, count, torch, 0.6f, &f->guess);
+    f->expected = ball_as_expected(&f->guess);
+    f->expected.lights_alone = lights_alone;
 }
 
 static void put_away(fixture *f)
 {
-    img_free(&f->guess.normal);
-    img_free(&f->guess.depth);
-    capture_drop(&f->capture);
+    ball_put_away(&f->capture, &f->guess);
 }
 
 static nfps_network *shipped_network(void)

@@ -197,15 +197,6 @@ static vec3 torch(int i)
     return vec3_make(aside * cosf(turn), aside * sinf(turn), -0.2f);
 }
 
-/* Photographs the ball, and makes what is expected of it. */
-static void ball_under_torches(merlin_capture *c, ball_expectation *e)
-{
-    const float distance = ball_capture(c, FEW, torch, 0, 0);
-    c->camera.distance = distance;
-    c->lighting = MERLIN_UNKNOWN_LIGHTS;
-    ball_expect(c, torch, 0.6f, e);
-}
-
 /* A surface that is too flat, and four pictures, of which it alone explains none. */
 static void few_pictures_correct_what_is_expected(void **state)
 {
@@ -213,9 +204,8 @@ static void few_pictures_correct_what_is_expected(void **state)
     merlin_capture c;
     merlin_surface s;
     ball_expectation e;
-    ball_under_torches(&c, &e);
-    const pst_expected expected = {
-        .normal = &e.normal, .depth = &e.depth, .light = e.light, .compared = e.light, .near = e.near};
+    ball_photograph(&c, FEW, torch, 0.6f, &e);
+    const pst_expected expected = ball_as_expected(&e);
     assert_int_equal(pst_solve_expecting(&c, &unknown, &expected, &s), OK);
     const double before = mean_angle(&c, &e.normal), after = mean_angle(&c, &s.normal);
     print_message("four pictures: %.2f degrees, expected %.2f\n", after, before);
@@ -229,9 +219,7 @@ static void few_pictures_correct_what_is_expected(void **state)
     c.count = 1;
     assert_int_equal(pst_solve_expecting(&c, &unknown, &expected, &s), MERLIN_BAD_INPUT);
     c.count = FEW;
-    img_free(&e.normal);
-    img_free(&e.depth);
-    capture_drop(&c);
+    ball_put_away(&c, &e);
 }
 
 /* No surface explains pictures that have other marks each. */
@@ -241,28 +229,24 @@ static void few_pictures_of_several_objects_are_unsure(void **state)
     merlin_capture c;
     merlin_surface s;
     ball_expectation e;
-    ball_under_torches(&c, &e);
+    ball_photograph(&c, FEW, torch, 0.6f, &e);
     for (int k = 0; k < FEW; k++)
         for (int i = 0; i < BALL_SIZE * BALL_SIZE; i++) {
             rng r = rng_at(3, (uint64_t)(i / BALL_SIZE / 12 * 100 + i % BALL_SIZE / 12), (uint64_t)k);
             if (rng_uniform(&r) < 0.5f) c.picture[k][i] = (uint16_t)(c.picture[k][i] / 4);
         }
-    const pst_expected expected = {
-        .normal = &e.normal, .depth = &e.depth, .light = e.light, .compared = e.light, .near = e.near};
+    const pst_expected expected = ball_as_expected(&e);
     assert_int_equal(pst_solve_expecting(&c, &unknown, &expected, &s), OK);
     assert_true(s.lights_unsure);
     merlin_surface_free(&s);
-    img_free(&e.normal);
-    img_free(&e.depth);
-    capture_drop(&c);
+    ball_put_away(&c, &e);
 }
 
 /* ---- many near lights ---- */
 
 static vec3 lamp(int i)
 {
-    const float turn = 0.5f + 6.2831853f * (float)i / LIGHTS, aside = 0.5f + 0.1f * (float)(i % 2);
-    return vec3_make(aside * cosf(turn), aside * sinf(turn), -0.25f + 0.1f * (float)(i % 3));
+    return ball_lamp(i, LIGHTS);
 }
 
 /* Returns the largest error of the lights' strengths, relative to their mean. */
@@ -283,12 +267,8 @@ static void strengths_of_near_lights_are_found(void **state)
     merlin_capture c;
     merlin_surface s;
     ball_expectation e;
-    const float distance = ball_capture(&c, LIGHTS, lamp, 0, 0);
-    c.camera.distance = distance;
-    c.lighting = MERLIN_UNKNOWN_LIGHTS;
-    ball_expect(&c, lamp, 0.6f, &e);
-    const pst_expected expected = {
-        .normal = &e.normal, .depth = &e.depth, .light = e.light, .compared = e.light, .near = e.near};
+    ball_photograph(&c, LIGHTS, lamp, 0.6f, &e);
+    const pst_expected expected = ball_as_expected(&e);
     const solution even = solve_with(&c, &expected);
     assert_true(even.angle < 3);
     assert_false(even.unequal);
@@ -300,9 +280,7 @@ static void strengths_of_near_lights_are_found(void **state)
     assert_true(mean_angle(&c, &s.normal) < 3);
     assert_true(worst_strength(&s, 0.4f) < 0.15f);
     merlin_surface_free(&s);
-    img_free(&e.normal);
-    img_free(&e.depth);
-    capture_drop(&c);
+    ball_put_away(&c, &e);
 }
 
 /* Free strengths explain much, so that they are believed only with a surface that is about what was expected. */
@@ -311,18 +289,12 @@ static void strengths_that_contradict_what_is_expected_are_unsure(void **state)
     (void)state;
     merlin_capture c;
     ball_expectation e;
-    const float distance = ball_capture(&c, LIGHTS, lamp, 0, 0);
-    c.camera.distance = distance;
-    c.lighting = MERLIN_UNKNOWN_LIGHTS;
-    ball_expect(&c, lamp, -0.6f, &e); /* a bowl */
+    ball_photograph(&c, LIGHTS, lamp, -0.6f, &e); /* a bowl */
     dim_some(&c, 0.4f);
-    const pst_expected expected = {
-        .normal = &e.normal, .depth = &e.depth, .light = e.light, .compared = e.light, .near = e.near};
+    const pst_expected expected = ball_as_expected(&e);
     const solution found = solve_with(&c, &expected);
     assert_true(found.unequal && found.unsure);
-    img_free(&e.normal);
-    img_free(&e.depth);
-    capture_drop(&c);
+    ball_put_away(&c, &e);
 }
 
 int main(void)

@@ -84,4 +84,34 @@ static inline void ball_expect(const merlin_capture *c, vec3 (*position)(int), f
     }
 }
 
+/* Returns the place of one of so many lamps around the ball. */
+static inline vec3 ball_lamp(int i, int count)
+{
+    const float turn = 0.5f + 6.2831853f * (float)i / (float)count, aside = 0.5f + 0.1f * (float)(i % 2);
+    return vec3_make(aside * cosf(turn), aside * sinf(turn), -0.25f + 0.1f * (float)(i % 3));
+}
+
+/* Photographs the ball under lights that are not told, and makes what is expected of it. */
+static inline void ball_photograph(merlin_capture *c, int lights, vec3 (*position)(int), float flatter,
+                                   ball_expectation *out)
+{
+    const float distance = ball_capture(c, lights, position, 0, 0);
+    c->camera.distance = distance;
+    c->lighting = MERLIN_UNKNOWN_LIGHTS;
+    ball_expect(c, position, flatter, out);
+}
+
+static inline pst_expected ball_as_expected(const ball_expectation *e)
+{
+    return (pst_expected){
+        .normal = &e->normal, .depth = &e->depth, .light = e->light, .compared = e->light, .near = e->near};
+}
+
+static inline void ball_put_away(merlin_capture *c, ball_expectation *e)
+{
+    img_free(&e->normal);
+    img_free(&e->depth);
+    capture_drop(c);
+}
+
 #endif

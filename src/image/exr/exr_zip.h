@@ -15,7 +15,7 @@
 
 #include <openexr.h>
 
-/* What is kept from chunk to chunk. */
+/* Memory and codecs that serve one chunk after the other; zeros at first. */
 typedef struct exr_zip {
     struct libdeflate_compressor *packer;
     struct libdeflate_decompressor *unpacker;

@@ -163,11 +163,7 @@ bool bundle_is_near(const bundle *b)
 
 status bundle_new(const pst_problem *p, const pinhole *camera, bundle_kind kind, int across, bundle *out)
 {
-    *out = (bundle){.problem = p,
-                    .kind = kind,
-                    .camera = *camera,
-                    .lights = p->capture->count,
-                    .light_unknowns = kind == BUNDLE_NEAR_FREE ? 4 : 3};
+    *out = (bundle){.problem = p, .kind = kind, .camera = *camera, .lights = p->capture->count};
     place_grid(out, across);
     size_t cells = (size_t)out->columns * (size_t)out->rows;
     size_t corners = (size_t)(out->columns + 1) * (size_t)(out->rows + 1);

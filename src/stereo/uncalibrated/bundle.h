@@ -56,7 +56,6 @@ typedef struct bundle {
     float *log_depth;          /* per corner */
     vec3 *position;            /* per light, in units of depth */
     float *strength;           /* per light */
-    int light_unknowns;        /* number of a light's unknowns: 3 of its position, and its strength if it is free */
     bundle_expected *expected; /* NULL: nothing is */
     double cost; /* cost of the last refinement: the sum of each value's share of an outlier, and the priors */
 } bundle;

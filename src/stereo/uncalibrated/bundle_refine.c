@@ -207,7 +207,7 @@ typedef struct slopes {
 static void add_value(const bundle *b, bundle_equations *y, const bundle_cell *c, int light, const slopes *j, loss w,
                       float r)
 {
-    const size_t n = (size_t)y->size, at = bundle_light_row(b, light), unknowns = (size_t)b->light_unknowns;
+    const size_t n = (size_t)y->size, at = bundle_light_row(b, light), unknowns = (size_t)bundle_light_unknowns(b);
     double *coupling = y->coupling + 4 + unknowns * (size_t)light;
     for (int i = 0; i < 4; i++) {
         double own = (double)(w.curvature * j->corner[i]);
@@ -239,7 +239,7 @@ static void eliminate_albedo(const bundle *b, bundle_equations *y, const bundle_
             if (c->corner[k] <= c->corner[i])
                 y->matrix[(size_t)c->corner[i] * n + (size_t)c->corner[k]] -= q[i] * q[k] / square;
     }
-    for (int i = 0; i < b->light_unknowns * b->lights; i++) {
+    for (int i = 0; i < bundle_light_unknowns(b) * b->lights; i++) {
         double *row = y->matrix + (size_t)(b->corners + i) * n, own = q[4 + i] / square;
         if (own == 0) continue;
         y->right[b->corners + i] -= own * left;
@@ -257,7 +257,7 @@ static void add_cell(const bundle *b, bundle_equations *y, int i, float width)
     const float *v = b->value + (size_t)i * lights, *q = b->precision + (size_t)i * lights;
     patch p = patch_of(b, c);
     double square = 0, left = 0;
-    memset(y->coupling, 0, (4 + (size_t)b->light_unknowns * lights) * sizeof *y->coupling);
+    memset(y->coupling, 0, (4 + (size_t)bundle_light_unknowns(b) * lights) * sizeof *y->coupling);
     for (int k = 0; k < b->lights; k++) {
         const float power = c->albedo * b->strength[k], s = b->strength[k] * shading(&p, b->position[k]);
         if (q[k] <= 0 || seen_shading(s, v[k], c->level) != s) continue;

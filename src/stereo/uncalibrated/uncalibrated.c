@@ -210,6 +210,15 @@ static double agreement(const hypothesis *h)
     return h->likeness - h->aside / full_aside;
 }
 
+/* Finds distant lights, and evaluates them; under: the problem with or without what is expected. */
+static status try_distant(const pst_problem *p, const pst_problem *under, const img *inflated, const img *expected,
+                          hypothesis *h)
+{
+    status s = pst_find_distant_lights(under, inflated, h->light, &h->rotation);
+    h->uneven = h->rotation.uneven;
+    return s == OK ? evaluate(p, expected, h) : s;
+}
+
 /* Finds distant lights without what is expected, and uses them if they agree far better with it: that happens where
  * few pictures leave more open than the lights' strengths. */
 static status find_plain(const pst_problem *p, const img *inflated, const img *expected, hypothesis *h)
@@ -218,9 +227,7 @@ static status find_plain(const pst_problem *p, const img *inflated, const img *e
     plain.expected = NULL;
     hypothesis other = {.light = calloc((size_t)p->capture->count, sizeof *other.light)};
     if (!other.light) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", p->capture->count);
-    status s = pst_find_distant_lights(&plain, inflated, other.light, &other.rotation);
-    other.uneven = other.rotation.uneven;
-    if (s == OK) s = evaluate(p, expected, &other);
+    status s = try_distant(p, &plain, inflated, expected, &other);
     if (s == OK && agreement(&other) > agreement(h) + far_ahead) {
         merlin_light *unused = h->light;
         *h = other;
@@ -232,9 +239,7 @@ static status find_plain(const pst_problem *p, const img *inflated, const img *e
 
 static status find_distant(const pst_problem *p, const img *inflated, const img *expected, hypothesis *h)
 {
-    status s = pst_find_distant_lights(p, inflated, h->light, &h->rotation);
-    h->uneven = h->rotation.uneven;
-    if (s == OK) s = evaluate(p, expected, h);
+    status s = try_distant(p, p, inflated, expected, h);
     return s == OK && p->expected ? find_plain(p, inflated, expected, h) : s;
 }
 

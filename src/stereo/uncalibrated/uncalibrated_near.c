@@ -175,6 +175,15 @@ static status solve_from(const start *from, double least, bundle *b)
     return s;
 }
 
+/* Keeps the trial if it is the better one, and frees the other. */
+static void keep_better(bundle *best, bundle *trial, bool is_better)
+{
+    const bundle worse = is_better ? *best : *trial;
+    if (is_better) *best = *trial;
+    *trial = worse;
+    bundle_free(trial);
+}
+
 static status solve_coarse(const pst_problem *p, const pinhole *camera, bundle *best)
 {
     status s = new_bundle(p, camera, BUNDLE_NEAR_EQUAL, COARSE, best);
@@ -183,12 +192,7 @@ static status solve_coarse(const pst_problem *p, const pinhole *camera, bundle *
         bundle trial;
         s = new_bundle(p, camera, BUNDLE_NEAR_EQUAL, COARSE, &trial);
         if (s == OK) s = solve_from(&starts[i], best->cost, &trial);
-        bundle worse = trial;
-        if (s == OK && trial.cost < best->cost) {
-            worse = *best;
-            *best = trial;
-        }
-        bundle_free(&worse);
+        keep_better(best, &trial, s == OK && trial.cost < best->cost);
     }
     return s;
 }
@@ -199,12 +203,7 @@ static status try_expected(const pst_problem *p, const pinhole *camera, bundle *
     bundle trial;
     status s = new_bundle(p, camera, BUNDLE_NEAR_EQUAL, COARSE, &trial);
     if (s == OK && trial.expected) s = solve_expected(&trial);
-    bundle worse = trial;
-    if (s == OK && trial.expected && (!best->problem || trial.cost < best->cost)) {
-        worse = *best;
-        *best = trial;
-    }
-    bundle_free(&worse);
+    keep_better(best, &trial, s == OK && trial.expected && (!best->problem || trial.cost < best->cost));
     return s;
 }
 
@@ -229,12 +228,7 @@ static status try_free(const pst_problem *p, const pinhole *camera, bundle *best
     bundle_take(&trial, best);
     bundle_fit_strengths(&trial);
     s = refine_coarse(&trial, HUGE_VAL);
-    bundle worse = trial;
-    if (s == OK && cost_of_value(best) > better_by * cost_of_value(&trial)) {
-        worse = *best;
-        *best = trial;
-    }
-    bundle_free(&worse);
+    keep_better(best, &trial, s == OK && cost_of_value(best) > better_by * cost_of_value(&trial));
     return s;
 }
 
