@@ -103,8 +103,7 @@ static void turn_shape(const eval_photo *p, const merlin_maps *maps, surface *s)
         }
 }
 
-/* Cuts the sample's square out of a picture of the photograph's size. */
-static status cut_out(const eval_photo *p, const merlin_image *from, img *out)
+status eval_photo_cut(const eval_photo *p, const merlin_image *from, img *out)
 {
     const img whole = *from;
     return img_crop(&whole, p->x, p->y, p->picture.width, p->picture.height, out);
@@ -114,11 +113,11 @@ status eval_photo_surface(const eval_photo *p, const merlin_maps *maps, surface 
 {
     *out = (surface){.lens = p->lens};
     const camera_slant crop = crop_slant(p, maps);
-    status s = cut_out(p, &maps->albedo, &out->albedo);
-    if (s == OK) s = cut_out(p, &maps->normal, &out->normal);
-    if (s == OK) s = cut_out(p, &maps->roughness, &out->roughness);
-    if (s == OK) s = cut_out(p, &maps->depth, &out->depth);
-    if (s == OK) s = cut_out(p, &maps->mask, &out->mask);
+    status s = eval_photo_cut(p, &maps->albedo, &out->albedo);
+    if (s == OK) s = eval_photo_cut(p, &maps->normal, &out->normal);
+    if (s == OK) s = eval_photo_cut(p, &maps->roughness, &out->roughness);
+    if (s == OK) s = eval_photo_cut(p, &maps->depth, &out->depth);
+    if (s == OK) s = eval_photo_cut(p, &maps->mask, &out->mask);
     if (s != OK) surface_free(out);
     const bool same = crop.right == p->lens.slant.right && crop.up == p->lens.slant.up;
     if (s == OK && !same) turn_shape(p, maps, out);
@@ -127,7 +126,7 @@ status eval_photo_surface(const eval_photo *p, const merlin_maps *maps, surface 
 
 status eval_photo_radiance(const eval_photo *p, const merlin_image *picture, img *out)
 {
-    status s = cut_out(p, picture, out);
+    status s = eval_photo_cut(p, picture, out);
     for (size_t i = 0; s == OK && i < img_value_count(out); i++)
         out->data[i] = fminf(p->white * out->data[i], 1);
     return s;

@@ -42,6 +42,8 @@ status eval_photo_surface(const eval_photo *photo, const merlin_maps *maps, surf
 /* Turns a place or a direction from the sample's space to the maps', and back. */
 vec3 eval_photo_to_maps(const eval_photo *photo, const merlin_maps *maps, vec3 at);
 vec3 eval_photo_from_maps(const eval_photo *photo, const merlin_maps *maps, vec3 at);
+/* Cuts the sample's square out of a picture of the photograph's size. */
+status eval_photo_cut(const eval_photo *photo, const merlin_image *picture, img *out);
 /* Makes a picture of the photograph's size and exposure radiance clipped to [0, 1], of the sample's size. */
 status eval_photo_radiance(const eval_photo *photo, const merlin_image *picture, img *out);
 

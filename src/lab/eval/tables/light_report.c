@@ -7,10 +7,11 @@
 #include "base/text/report.h"
 #include "lab/eval/tables/light_table.h"
 
-/* Returns the names of a figure: those of all photographs are followed by those of the light found. */
+/* Returns the names of a figure: those of the maps are followed by those of the light found. */
 static const lit_words *words_of(int figure)
 {
-    static const lit_words of_light[] = {{"as a flash", "seen_as_flash_alone", 1},
+    static const lit_words of_light[] = {{"rebuilt", "reconstruction_ssim", 1},
+                                         {"as a flash", "seen_as_flash_alone", 1},
                                          {"lamp's way", "light_direction_median_degrees", 1}};
     return figure < LIT_FIGURES ? &lit_figure_words[figure] : &of_light[figure - LIT_FIGURES];
 }

@@ -76,6 +76,18 @@ static status judge_direction(run *r, const lit_subject *on, const lit_mixture *
     return note_direction(&r->found[kind], acos(fmin(fmax(cosine, -1), 1)) / (double)DEGREE);
 }
 
+/* Adds how similar the reconstruction is to the photograph. */
+static status judge_reconstruction(const eval_photo *photo, const merlin_maps *maps, double *sum)
+{
+    double similarity = 0;
+    img rebuilt = {0};
+    status s = eval_photo_cut(photo, &maps->reconstruction, &rebuilt);
+    if (s == OK) s = eval_ssim(&rebuilt, &photo->picture, &similarity);
+    *sum += similarity;
+    img_free(&rebuilt);
+    return s;
+}
+
 static bool is_seen_as_flash(const run *r, const merlin_maps *maps)
 {
     return r->options->flash ? strcmp(maps->model, r->table->flash_model) == 0 : found_light_is_flash(&maps->light);
@@ -91,6 +103,7 @@ static status measure(run *r, const lit_subject *on, const lit_mixture *m, light
     if (s == OK) s = eval_photo_surface(&photo, &maps, &found);
     if (s == OK && m->lamp >= 0 && r->table->directions)
         s = judge_direction(r, on, m, kind, eval_photo_from_maps(&photo, &maps, vec3_of(maps.light.lamp)));
+    if (s == OK) s = judge_reconstruction(&photo, &maps, &r->table->mean[kind][LIGHT_REBUILT]);
     if (s == OK) {
         lit_figures_add(&found, on, r->table->mean[kind]);
         r->table->mean[kind][LIGHT_AS_FLASH] += is_seen_as_flash(r, &maps);

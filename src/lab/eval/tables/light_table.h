@@ -38,6 +38,7 @@ typedef enum light_figure {
     LIGHT_ALBEDO_FREE = LIT_ALBEDO_FREE,
     LIGHT_ROUGHNESS = LIT_ROUGHNESS,
     LIGHT_RELIEF = LIT_RELIEF,
+    LIGHT_REBUILT,   /* structural similarity of the photograph and what the maps' reconstruction makes of it */
     LIGHT_AS_FLASH,  /* share of the photographs that are seen as lit by a flash alone; models of any light alone */
     LIGHT_DIRECTION, /* of the strongest lamp where one is found, degrees; the same */
     LIGHT_FIGURES
