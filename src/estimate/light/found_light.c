@@ -27,6 +27,11 @@ void found_light_take(const float code[MODEL_LIGHTS], merlin_found_light *out)
     model_decode_sh(code + MODEL_LIGHTS_REST, out->rest);
 }
 
+bool found_light_has_lamp(const float code[MODEL_LIGHTS])
+{
+    return vec3_length(vec3_of(code + MODEL_LIGHTS_LAMP)) >= LEAST_SURE;
+}
+
 static float mean(vec3 v)
 {
     return (v.x + v.y + v.z) / 3;

@@ -18,6 +18,8 @@
 /* Decodes the light from the network's output (model.h, MODEL_LIGHTS). A lamp with a probability below one half is
  * dropped. */
 void found_light_take(const float code[MODEL_LIGHTS], merlin_found_light *out);
+/* Tells whether found_light_take keeps the lamp. */
+bool found_light_has_lamp(const float code[MODEL_LIGHTS]);
 
 /* Shares of all light that arrives in the object's middle, averaged over the channels: the lamp's wherever it is, and
  * of the rest what reaches a surface that faces the camera. They add up to 1; all zero if nothing is known. */

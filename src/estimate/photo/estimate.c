@@ -5,11 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/number.h"
 #include "base/progress.h"
 #include "base/watch.h"
 #include "estimate/light/found_light.h"
-#include "estimate/light/relight_env.h"
+#include "estimate/light/found_light_fit.h"
 #include "estimate/photo/compare.h"
 #include "estimate/photo/detail.h"
 #include "estimate/photo/estimate.h"
@@ -19,6 +18,7 @@
 #include "estimate/photo/model_pair.h"
 #include "estimate/photo/params.h"
 #include "estimate/photo/photo_doubts.h"
+#include "estimate/photo/reconstruction.h"
 #include "estimate/surface/exposure.h"
 #include "image/coverage.h"
 #include "image/read/read.h"
@@ -212,6 +212,15 @@ static status run_network(network *n, work *w)
     return s;
 }
 
+/* Fits the light that the network tells of the only photograph. */
+static status fit_light(const network *n, work *w, const merlin_maps *maps)
+{
+    const network_estimation *e = &w->low;
+    if (network_config(n)->lighting != MODEL_LIGHT_ANY || w->low_photos) return OK;
+    const lit_photo of = {&e->maps, &w->low_photo, &e->visibility, exposure_limit(&maps->photo, maps->gain)};
+    return found_light_fit(&of, w->low.lights);
+}
+
 static status follow_mean(network *n, work *w)
 {
     if (w->params->views == 1 || network_config(n)->lighting == MODEL_LIGHT_ANY) return OK;
@@ -233,12 +242,6 @@ static status add_detail(network *n, work *w, int side, float gain)
     return side > 0 ? detail_add(n, &r, &w->low.maps) : OK;
 }
 
-static void expose_picture(img *picture, float white)
-{
-    for (size_t i = 0; i < img_value_count(picture); i++)
-        if (picture->data[i] != 0) picture->data[i] = clamp(picture->data[i] / white, 0, 1);
-}
-
 static status resize_spread(work *w)
 {
     status s = surface_resize_image(&w->low.spread, &w->low_mask, &w->crop_mask, &w->spread);
@@ -253,26 +256,8 @@ static status refine(work *w, const merlin_found_light *light, float gain, float
     status s = surface_refine(&w->low.maps, &w->crop_photo, &w->crop_mask, &w->full);
     img_free(&w->crop_photo);
     if (s == OK && w->low.spread.data) s = resize_spread(w);
-    img *picture = &w->reconstruction;
-    const size_t count = 3 * (size_t)w->crop.side * (size_t)w->crop.side;
-    if (light->known) {
-        if (s == OK) s = img_new(picture, w->crop.side, w->crop.side, 3);
-        if (s == OK) s = found_light_add(&w->full, light, &w->low.visibility, picture);
-        if (s == OK) expose_picture(picture, white);
-        return s;
-    }
-    if (s == OK) s = surface_resize_indirect(&w->low.indirect, &w->low_mask, &w->crop_mask, picture);
-    if (s != OK) return s;
-    for (size_t i = 0; i < count; i++)
-        if (picture->data[i] != 0) picture->data[i] *= w->crop_mask.data[i / 3];
-    surface_add_light(&w->full, vec3_make(0, 0, 0), picture);
-    if (in_environment) {
-        const float(*sh)[3] = (const float(*)[3])w->low.environment;
-        surface_add_ambient(&w->full, sh, picture);
-        surface_add_ambient_highlights(&w->full, sh, picture);
-    }
-    expose_picture(picture, white);
-    return OK;
+    const reconstruction r = {&w->full, &w->low, &w->low_mask, &w->crop_mask, light, in_environment, white};
+    return s == OK ? reconstruction_render(&r, &w->reconstruction) : s;
 }
 
 static bool is_whole(const work *w)
@@ -391,6 +376,7 @@ static status estimate(merlin_model *model, work *w, merlin_maps *maps)
     if (s == OK) s = prepare(model, n, w, maps);
     if (s == OK) s = run_network(n, w);
     if (s == OK) s = compare(model->several, w);
+    if (s == OK) s = fit_light(n, w, maps);
     if (s == OK) s = lap(w, &t->network);
     if (s == OK) s = prepare_bounces(model, n, w, maps);
     maps->has_environment = network_config(n)->lighting == MODEL_LIGHT_BOTH;

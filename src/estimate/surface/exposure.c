@@ -42,12 +42,21 @@ float exposure_gain(const img *color, const img *mask)
 /* Limit of values that count as 1, with room for rounding errors. */
 static const float BEYOND_WHITE = 1.01f;
 
+static bool is_beyond_white(const img *photo)
+{
+    for (size_t i = 0; i < img_value_count(photo); i++)
+        if (photo->data[i] > BEYOND_WHITE) return true;
+    return false;
+}
+
 float exposure_white(const img *photo, float gain)
 {
-    if (gain >= EXPOSURE_WHITE) return gain;
-    for (size_t i = 0; i < img_value_count(photo); i++)
-        if (photo->data[i] > BEYOND_WHITE) return EXPOSURE_WHITE;
-    return gain;
+    return gain < EXPOSURE_WHITE && is_beyond_white(photo) ? EXPOSURE_WHITE : gain;
+}
+
+float exposure_limit(const img *photo, float gain)
+{
+    return is_beyond_white(photo) ? INFINITY : gain;
 }
 
 float exposure_burnt_out(const img *color, const img *mask)

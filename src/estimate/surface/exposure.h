@@ -25,6 +25,9 @@ float exposure_gain(const img *color, const img *mask);
  * values above 1, which pictures cannot show, at least EXPOSURE_WHITE. */
 float exposure_white(const img *photo, float gain);
 
+/* Returns the radiance at which a photograph saturates: its white, or infinity if it has values above 1. */
+float exposure_limit(const img *photo, float gain);
+
 /* Returns the share of the object's values, channel by channel, that are burnt out: equal to 1, where a photograph
  * saturates. Larger values were not cut off there: they are floats, or a colour outside sRGB. color: 3 channels,
  * linear; mask: 1 channel; only fully covered pixels count, so that color may have been multiplied by it. */

@@ -1,0 +1,350 @@
+/* SPDX-License-Identifier: MIT */
+#include "estimate/light/found_light_fit.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "estimate/light/found_light.h"
+#include "optics/ambient.h"
+#include "optics/light.h"
+#include "optics/sh.h"
+
+/* Pixels across, which are enough, and of the object, fewer of which tell too little. */
+enum { ACROSS = 28, LEAST_SPOTS = 40, LAMP = 0, FLASH, OTHER, SOURCES };
+/* Share of white from which on a channel may be burnt out. */
+static const float UNBURNT = 0.93f;
+/* Residual, as a share of a value plus a tenth of the mean one, from which on it counts less. */
+static const double PLAUSIBLE = 0.4, FLOOR = 0.1;
+/* Weights of what the network tells: of one less the cosine to its direction, and of the squared difference in inverse
+ * distance, in the logarithm of the residuals' cost. */
+static const double TOLD_DIRECTION = 2, TOLD_DISTANCE = 0.33;
+
+/* So far aside the network tells a lamp's direction as well as this fit. */
+static const float TRUSTED = 70 * DEGREE;
+
+static const vec3 middle = {0, 0, -1};
+
+typedef struct spot {
+    shade_input in;
+    vec3 value, rest; /* radiance; that under the network's rest */
+    float visible;
+} spot;
+
+typedef struct fitting {
+    spot *spots;
+    float *source[SOURCES], *value; /* of each spot, the channels' mean or one channel */
+    int count;
+    double floor; /* added to a value, of whose sum a residual is a share */
+    vec3 told;    /* the network's direction, unit, */
+    float told_inverse;
+} fitting;
+
+/* A lamp: unit direction from the object's middle, and inverse of its distance from there. */
+typedef struct place {
+    vec3 toward;
+    float inverse;
+    double cost;
+} place;
+
+static float mean_of(vec3 v)
+{
+    return (v.x + v.y + v.z) / 3;
+}
+
+/* ---- the object's pixels ---- */
+
+/* Returns the light of the network's rest on a spot. */
+static vec3 lit_by_rest(const shade_input *in, const float (*rest)[3])
+{
+    const vec3 matte = vec3_scale(vec3_mul(in->albedo, sh_irradiance(rest, in->normal)), 1 / PI);
+    const vec3 gloss = ambient_specular(rest, in->roughness, in->normal, vec3_normalize(vec3_scale(in->ray, -1)));
+    return vec3_make(fmaxf(matte.x, 0) + gloss.x, fmaxf(matte.y, 0) + gloss.y, fmaxf(matte.z, 0) + gloss.z);
+}
+
+static void add_spot(const lit_photo *of, const float (*rest)[3], int x, int y, fitting *f)
+{
+    const surface *m = of->maps;
+    const camera c = surface_camera(m);
+    const vec3 value = vec3_of(img_at(of->photo, x, y));
+    if (!(*img_at(&m->mask, x, y) > 0.5f) || !(mean_of(value) > 0)) return;
+    if (fmaxf(value.x, fmaxf(value.y, value.z)) > UNBURNT * of->white) return;
+    spot *s = &f->spots[f->count++];
+    s->in = (shade_input){.albedo = vec3_of(img_at(&m->albedo, x, y)),
+                          .roughness = *img_at(&m->roughness, x, y),
+                          .normal = vec3_of(img_at(&m->normal, x, y)),
+                          .depth = *img_at(&m->depth, x, y),
+                          .ray = camera_point(&c, (float)x + 0.5f, (float)y + 0.5f, 1)};
+    s->value = value;
+    s->rest = lit_by_rest(&s->in, rest);
+    s->visible = of->visibility->data ? *img_at(of->visibility, x, y) : 1;
+}
+
+static void fitting_free(fitting *f)
+{
+    free(f->spots);
+    free(f->value);
+}
+
+static status fitting_new(const lit_photo *of, const float code[MODEL_LIGHTS], fitting *f)
+{
+    const int size = of->maps->mask.width, step = size > ACROSS ? size / ACROSS : 1;
+    const int across = (size + step - 1) / step;
+    const size_t most = (size_t)across * (size_t)across;
+    float rest[9][3];
+    *f = (fitting){.told = vec3_normalize(vec3_of(code + MODEL_LIGHTS_LAMP)),
+                   .told_inverse = fmaxf(code[MODEL_LIGHTS_DISTANCE], 0),
+                   .spots = calloc(most, sizeof *f->spots),
+                   .value = calloc(most * (SOURCES + 1), sizeof *f->value)};
+    if (!f->spots || !f->value) {
+        fitting_free(f);
+        return fail(MERLIN_NO_MEMORY, "no memory to fit a photograph's light");
+    }
+    for (int s = 0; s < SOURCES; s++)
+        f->source[s] = f->value + most * (size_t)(s + 1);
+    model_decode_sh(code + MODEL_LIGHTS_REST, rest);
+    for (int y = 0; y < size; y += step)
+        for (int x = 0; x < size; x += step)
+            add_spot(of, (const float(*)[3])rest, x, y, f);
+    return OK;
+}
+
+/* ---- light of one strength ---- */
+
+static vec3 lit_by_flash(const spot *s)
+{
+    shade_input in = s->in;
+    in.light = vec3_make(0, 0, 0);
+    in.power = LIGHT_POWER;
+    return shade_point(&in);
+}
+
+/* Lights a spot by a lamp that is as strong in the object's middle, whatever its distance. */
+static vec3 lit_by_lamp(const spot *s, const place *at)
+{
+    shade_input in = s->in;
+    const bool far = at->inverse < 0.05f;
+    const float distance = far ? 1 : 1 / at->inverse;
+    in.light = vec3_fma(far ? vec3_scale(in.ray, in.depth) : middle, distance, at->toward);
+    in.power = LIGHT_POWER * distance * distance;
+    return vec3_scale(shade_point(&in), s->visible);
+}
+
+/* ---- strengths ---- */
+
+/* Minimizes |A x - b|² of x that is not negative, given AᵀA and Aᵀb, one unknown after the other. */
+static void solve_not_negative(int n, const double a[SOURCES][SOURCES], const double b[SOURCES], double x[SOURCES])
+{
+    double change = 1;
+    for (int turn = 0; turn < 200 && change > 1e-5; turn++) {
+        change = 0;
+        for (int i = 0; i < n; i++) {
+            double left = b[i];
+            for (int j = 0; j < n; j++)
+                left -= j == i ? 0 : a[i][j] * x[j];
+            const double next = a[i][i] > 0 ? fmax(left / a[i][i], 0) : 0;
+            change = fmax(change, fabs(next - x[i]) / (next + 1e-3));
+            x[i] = next;
+        }
+    }
+}
+
+/* Returns the light of the first n sources on a spot, less its value. */
+static double residual(const fitting *f, int n, const double x[SOURCES], int i)
+{
+    double lit = 0;
+    for (int s = 0; s < n; s++)
+        lit += x[s] * (double)f->source[s][i];
+    return lit - (double)f->value[i];
+}
+
+/* Sums up the equations of the first n sources, each weighted by how well the last strengths explain it. */
+static void sum_equations(const fitting *f, int n, const double x[SOURCES], bool first, double a[SOURCES][SOURCES],
+                          double b[SOURCES])
+{
+    for (int i = 0; i < f->count; i++) {
+        const double scale = (double)f->value[i] + f->floor, r = first ? 0 : residual(f, n, x, i) / scale / PLAUSIBLE;
+        const double weight = 1 / (scale * scale * sqrt(1 + r * r));
+        for (int s = 0; s < n; s++) {
+            const double of = weight * (double)f->source[s][i];
+            b[s] += of * (double)f->value[i];
+            for (int t = 0; t < n; t++)
+                a[s][t] += of * (double)f->source[t][i];
+        }
+    }
+}
+
+/* Fits the strengths of the first n sources to the values, and returns the mean cost of what is left. */
+static double fit_strengths(fitting *f, int n, double x[SOURCES])
+{
+    enum { PASSES = 4 };
+    double sum = 0, cost = 0;
+    for (int i = 0; i < f->count; i++)
+        sum += (double)f->value[i];
+    f->floor = FLOOR * sum / f->count;
+    for (int s = 0; s < SOURCES; s++)
+        x[s] = 0;
+    for (int pass = 0; pass < PASSES; pass++) {
+        double a[SOURCES][SOURCES] = {{0}}, b[SOURCES] = {0};
+        sum_equations(f, n, x, pass == 0, a, b);
+        solve_not_negative(n, (const double(*)[SOURCES])a, b, x);
+    }
+    for (int i = 0; i < f->count; i++) {
+        const double r = residual(f, n, x, i) / ((double)f->value[i] + f->floor) / PLAUSIBLE;
+        cost += log1p(r * r);
+    }
+    return cost / f->count;
+}
+
+/* ---- the lamp's place ---- */
+
+static void judge(fitting *f, place *at)
+{
+    double x[SOURCES];
+    for (int i = 0; i < f->count; i++)
+        f->source[LAMP][i] = mean_of(lit_by_lamp(&f->spots[i], at));
+    const double from_told = (double)(at->inverse - f->told_inverse);
+    at->cost = log(fit_strengths(f, SOURCES, x) + 1e-6) + TOLD_DIRECTION * (1 - (double)vec3_dot(at->toward, f->told)) +
+               TOLD_DISTANCE * from_told * from_told;
+}
+
+/* Finds the best of nine places: as far aside as the network tells or less, and to other sides. */
+static place first_place(fitting *f)
+{
+    const float aside = acosf(fminf(fmaxf(f->told.z, -1), 1)), way = atan2f(f->told.y, f->told.x);
+    place best = {.cost = HUGE_VAL};
+    for (int i = 0; i < 9; i++) {
+        static const float less[3] = {1, 0.6f, 0.3f};
+        const float a = aside * less[i / 3], w = way + 30 * DEGREE * (float)(i % 3 - 1);
+        place at = {.toward = {sinf(a) * cosf(w), sinf(a) * sinf(w), cosf(a)}, .inverse = f->told_inverse};
+        judge(f, &at);
+        if (at.cost < best.cost) best = at;
+    }
+    return best;
+}
+
+/* Tries the six neighbours of a place, and goes to each that is better. */
+static bool go_on(fitting *f, float step, float nearer, place *at)
+{
+    bool moved = false;
+    const vec3 across =
+        vec3_normalize(vec3_cross(fabsf(at->toward.y) < 0.9f ? vec3_make(0, 1, 0) : vec3_make(1, 0, 0), at->toward));
+    const vec3 ways[2] = {across, vec3_cross(at->toward, across)};
+    for (int i = 0; i < 6; i++) {
+        const float by = i % 2 ? -1 : 1;
+        place next = *at;
+        if (i < 4)
+            next.toward = vec3_normalize(vec3_fma(at->toward, by * tanf(step), ways[i / 2]));
+        else
+            next.inverse = fmaxf(at->inverse + by * nearer, 0);
+        judge(f, &next);
+        if (!(next.cost < at->cost - 1e-5)) continue;
+        *at = next;
+        moved = true;
+    }
+    return moved;
+}
+
+static place best_place(fitting *f)
+{
+    if (f->told.z < cosf(TRUSTED)) return (place){f->told, f->told_inverse, 0};
+    for (int i = 0; i < f->count; i++) { /* in the channels' mean, which tells it as well as each channel would */
+        f->value[i] = mean_of(f->spots[i].value);
+        f->source[FLASH][i] = mean_of(lit_by_flash(&f->spots[i]));
+        f->source[OTHER][i] = mean_of(f->spots[i].in.albedo); /* from everywhere, as bounces are about */
+    }
+    place at = first_place(f);
+    float nearer = 0.25f, step = 14 * DEGREE;
+    for (int turn = 0; turn < 60 && step > 1.2f * DEGREE; turn++)
+        if (!go_on(f, step, nearer, &at)) step /= 2, nearer /= 2;
+    return at;
+}
+
+/* ---- the result ---- */
+
+static float channel_of(vec3 v, int c)
+{
+    return c == 0 ? v.x : c == 1 ? v.y : v.z;
+}
+
+/* Fits the strengths of lamp, flash and the network's rest in one channel. */
+static void fit_channel(fitting *f, const place *at, int c, double x[SOURCES])
+{
+    for (int i = 0; i < f->count; i++) {
+        const spot *s = &f->spots[i];
+        f->value[i] = channel_of(s->value, c);
+        f->source[LAMP][i] = channel_of(lit_by_lamp(s, at), c);
+        f->source[FLASH][i] = channel_of(lit_by_flash(s), c);
+        f->source[OTHER][i] = channel_of(s->rest, c);
+    }
+    fit_strengths(f, SOURCES, x);
+}
+
+/* Fits all light of one channel, as it is told, at once: how much of it is flash, and how much comes from everywhere,
+ * the network knows better. */
+static double fit_whole(fitting *f, float flash, int c)
+{
+    double x[SOURCES];
+    for (int i = 0; i < f->count; i++) {
+        const spot *s = &f->spots[i];
+        f->value[i] = channel_of(s->value, c);
+        f->source[0][i] = flash * channel_of(lit_by_flash(s), c) + channel_of(s->rest, c);
+    }
+    fit_strengths(f, 1, x);
+    return x[0];
+}
+
+static void scale_rest(const double by[3], float code[MODEL_LIGHTS])
+{
+    float rest[9][3];
+    model_decode_sh(code + MODEL_LIGHTS_REST, rest);
+    for (int k = 0; k < 9; k++)
+        for (int c = 0; c < 3; c++)
+            rest[k][c] *= (float)by[c];
+    model_encode_sh((const float(*)[3])rest, code + MODEL_LIGHTS_REST);
+}
+
+static void put_whole(fitting *f, float code[MODEL_LIGHTS])
+{
+    const float flash = model_decode_strength(code[MODEL_LIGHTS_FLASH]);
+    double by[3];
+    for (int c = 0; c < 3; c++)
+        by[c] = fit_whole(f, flash, c);
+    const double mean = (by[0] + by[1] + by[2]) / 3;
+    if (!(mean > 0)) return;
+    scale_rest(by, code);
+    code[MODEL_LIGHTS_FLASH] = model_encode_strength((float)mean * flash);
+}
+
+static void put_all(fitting *f, const place *at, float code[MODEL_LIGHTS])
+{
+    double x[3][SOURCES], rest[3], of_lamp = 0, of_flash = 0;
+    for (int c = 0; c < 3; c++) {
+        fit_channel(f, at, c, x[c]);
+        of_lamp += x[c][LAMP] / 3;
+        of_flash += x[c][FLASH] / 3;
+        rest[c] = x[c][OTHER];
+    }
+    if (!(of_lamp > 0)) return;
+    scale_rest(rest, code);
+    for (int c = 0; c < 3; c++)
+        code[MODEL_LIGHTS_STRENGTH + c] = model_encode_strength((float)x[c][LAMP]);
+    code[MODEL_LIGHTS_FLASH] = model_encode_strength((float)of_flash);
+    const float sure = vec3_length(vec3_of(code + MODEL_LIGHTS_LAMP));
+    vec3_put(vec3_scale(at->toward, sure), code + MODEL_LIGHTS_LAMP);
+    code[MODEL_LIGHTS_DISTANCE] = at->inverse;
+}
+
+status found_light_fit(const lit_photo *of, float code[MODEL_LIGHTS])
+{
+    fitting f;
+    status s = fitting_new(of, code, &f);
+    if (s != OK) return s;
+    if (f.count >= LEAST_SPOTS && found_light_has_lamp(code)) {
+        const place at = best_place(&f);
+        put_all(&f, &at, code);
+    } else if (f.count >= LEAST_SPOTS) {
+        put_whole(&f, code);
+    }
+    fitting_free(&f);
+    return OK;
+}
