@@ -10,7 +10,7 @@
 #include "optics/sh.h"
 
 /* Pixels across, which are enough, and of the object, fewer of which tell too little. */
-enum { ACROSS = 28, LEAST_SPOTS = 40, LAMP = 0, FLASH, OTHER, SOURCES };
+enum { ACROSS = 28, LEAST_SPOTS = 40, LAMP = 0, FLASH, OTHER, SOURCES, COEFFICIENTS = 9 };
 /* Share of white from which on a channel may be burnt out. */
 static const float UNBURNT = 0.93f;
 /* Residual, as a share of a value plus a tenth of the mean one, from which on it counts less. */
@@ -18,6 +18,8 @@ static const double PLAUSIBLE = 0.4, FLOOR = 0.1;
 /* Weights of what the network tells: of one less the cosine to its direction, and of the squared difference in inverse
  * distance, in the logarithm of the residuals' cost. */
 static const double TOLD_DIRECTION = 2, TOLD_DISTANCE = 0.33;
+/* Weight of what the network tells of a room's coefficients, as a share of the mean weight of the pixels. */
+static const double TOLD_ROOM = 0.2;
 
 /* So far aside the network tells a lamp's direction as well as this fit. */
 static const float TRUSTED = 70 * DEGREE;
@@ -90,7 +92,7 @@ static status fitting_new(const lit_photo *of, const float code[MODEL_LIGHTS], f
     const int size = of->maps->mask.width, step = size > ACROSS ? size / ACROSS : 1;
     const int across = (size + step - 1) / step;
     const size_t most = (size_t)across * (size_t)across;
-    float rest[9][3];
+    float rest[COEFFICIENTS][3];
     *f = (fitting){.told = vec3_normalize(vec3_of(code + MODEL_LIGHTS_LAMP)),
                    .told_inverse = fmaxf(code[MODEL_LIGHTS_DISTANCE], 0),
                    .spots = calloc(most, sizeof *f->spots),
@@ -131,8 +133,8 @@ static vec3 lit_by_lamp(const spot *s, const place *at)
 
 /* ---- strengths ---- */
 
-/* Minimizes |A x - b|² of x that is not negative, given AᵀA and Aᵀb, one unknown after the other. */
-static void solve_not_negative(int n, const double a[SOURCES][SOURCES], const double b[SOURCES], double x[SOURCES])
+/* Minimizes |A x - b|² of x no less than `least`, given AᵀA and Aᵀb, one unknown after the other. */
+static void solve(int n, double (*a)[COEFFICIENTS], const double *b, double least, double *x)
 {
     double change = 1;
     for (int turn = 0; turn < 200 && change > 1e-5; turn++) {
@@ -141,15 +143,15 @@ static void solve_not_negative(int n, const double a[SOURCES][SOURCES], const do
             double left = b[i];
             for (int j = 0; j < n; j++)
                 left -= j == i ? 0 : a[i][j] * x[j];
-            const double next = a[i][i] > 0 ? fmax(left / a[i][i], 0) : 0;
-            change = fmax(change, fabs(next - x[i]) / (next + 1e-3));
+            const double next = a[i][i] > 0 ? fmax(left / a[i][i], least) : 0;
+            change = fmax(change, fabs(next - x[i]) / (fabs(next) + 1e-3));
             x[i] = next;
         }
     }
 }
 
 /* Returns the light of the first n sources on a spot, less its value. */
-static double residual(const fitting *f, int n, const double x[SOURCES], int i)
+static double residual(const fitting *f, int n, const double *x, int i)
 {
     double lit = 0;
     for (int s = 0; s < n; s++)
@@ -158,7 +160,7 @@ static double residual(const fitting *f, int n, const double x[SOURCES], int i)
 }
 
 /* Sums up the equations of the first n sources, each weighted by how well the last strengths explain it. */
-static void sum_equations(const fitting *f, int n, const double x[SOURCES], bool first, double a[SOURCES][SOURCES],
+static void sum_equations(const fitting *f, int n, const double x[SOURCES], bool first, double (*a)[COEFFICIENTS],
                           double b[SOURCES])
 {
     for (int i = 0; i < f->count; i++) {
@@ -184,9 +186,9 @@ static double fit_strengths(fitting *f, int n, double x[SOURCES])
     for (int s = 0; s < SOURCES; s++)
         x[s] = 0;
     for (int pass = 0; pass < PASSES; pass++) {
-        double a[SOURCES][SOURCES] = {{0}}, b[SOURCES] = {0};
+        double a[SOURCES][COEFFICIENTS] = {{0}}, b[SOURCES] = {0};
         sum_equations(f, n, x, pass == 0, a, b);
-        solve_not_negative(n, (const double(*)[SOURCES])a, b, x);
+        solve(n, a, b, 0, x);
     }
     for (int i = 0; i < f->count; i++) {
         const double r = residual(f, n, x, i) / ((double)f->value[i] + f->floor) / PLAUSIBLE;
@@ -293,31 +295,71 @@ static double fit_whole(fitting *f, float flash, int c)
     return x[0];
 }
 
-static void scale_rest(const double by[3], float code[MODEL_LIGHTS])
+/* Scales the rest by channel, and adds to its coefficients. */
+static void change_rest(const double by[3], double (*add)[COEFFICIENTS], float code[MODEL_LIGHTS])
 {
-    float rest[9][3];
+    float rest[COEFFICIENTS][3];
     model_decode_sh(code + MODEL_LIGHTS_REST, rest);
-    for (int k = 0; k < 9; k++)
+    for (int k = 0; k < COEFFICIENTS; k++)
         for (int c = 0; c < 3; c++)
-            rest[k][c] *= (float)by[c];
+            rest[k][c] = (float)(by[c] * (double)rest[k][c] + add[c][k]);
     model_encode_sh((const float(*)[3])rest, code + MODEL_LIGHTS_REST);
+}
+
+/* Finds what has to be added to a room's coefficients, in the channel of the values, for the only source, so many
+ * times as strong, to explain them. */
+static void fit_room(const fitting *f, int c, double by, double change[COEFFICIENTS])
+{
+    double a[COEFFICIENTS][COEFFICIENTS] = {{0}}, b[COEFFICIENTS] = {0}, mean = 0;
+    for (int i = 0; i < f->count; i++) {
+        const spot *s = &f->spots[i];
+        real basis[COEFFICIENTS];
+        const double left = -residual(f, 1, &by, i), scale = (double)f->value[i] + f->floor,
+                     r = left / scale / PLAUSIBLE;
+        const double weight = 1 / (scale * scale * sqrt(1 + r * r));
+        sh_basis(s->in.normal, basis);
+        for (int k = 0; k < COEFFICIENTS; k++)
+            basis[k] *= sh_cosine_band(k) * channel_of(s->in.albedo, c) / PI;
+        for (int k = 0; k < COEFFICIENTS; k++) {
+            b[k] += weight * (double)basis[k] * left;
+            for (int j = 0; j < COEFFICIENTS; j++)
+                a[k][j] += weight * (double)(basis[k] * basis[j]);
+        }
+    }
+    for (int k = 0; k < COEFFICIENTS; k++)
+        mean += a[k][k] / COEFFICIENTS;
+    for (int k = 0; k < COEFFICIENTS; k++)
+        a[k][k] += TOLD_ROOM * mean, change[k] = 0;
+    solve(COEFFICIENTS, a, b, -HUGE_VAL, change);
+}
+
+/* Tells whether most of the light comes from a room. */
+static bool is_room(const float code[MODEL_LIGHTS])
+{
+    merlin_found_light light;
+    found_light_take(code, &light);
+    const found_light_shares share = found_light_share(&light);
+    return share.rest > share.flash;
 }
 
 static void put_whole(fitting *f, float code[MODEL_LIGHTS])
 {
     const float flash = model_decode_strength(code[MODEL_LIGHTS_FLASH]);
-    double by[3];
-    for (int c = 0; c < 3; c++)
+    const bool room = is_room(code);
+    double by[3], change[3][COEFFICIENTS] = {{0}};
+    for (int c = 0; c < 3; c++) {
         by[c] = fit_whole(f, flash, c);
+        if (room) fit_room(f, c, by[c], change[c]);
+    }
     const double mean = (by[0] + by[1] + by[2]) / 3;
     if (!(mean > 0)) return;
-    scale_rest(by, code);
+    change_rest(by, change, code);
     code[MODEL_LIGHTS_FLASH] = model_encode_strength((float)mean * flash);
 }
 
 static void put_all(fitting *f, const place *at, float code[MODEL_LIGHTS])
 {
-    double x[3][SOURCES], rest[3], of_lamp = 0, of_flash = 0;
+    double x[3][SOURCES], rest[3], none[3][COEFFICIENTS] = {{0}}, of_lamp = 0, of_flash = 0;
     for (int c = 0; c < 3; c++) {
         fit_channel(f, at, c, x[c]);
         of_lamp += x[c][LAMP] / 3;
@@ -325,7 +367,7 @@ static void put_all(fitting *f, const place *at, float code[MODEL_LIGHTS])
         rest[c] = x[c][OTHER];
     }
     if (!(of_lamp > 0)) return;
-    scale_rest(rest, code);
+    change_rest(rest, none, code);
     for (int c = 0; c < 3; c++)
         code[MODEL_LIGHTS_STRENGTH + c] = model_encode_strength((float)x[c][LAMP]);
     code[MODEL_LIGHTS_FLASH] = model_encode_strength((float)of_flash);

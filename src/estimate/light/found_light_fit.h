@@ -21,8 +21,8 @@ typedef struct lit_photo {
 
 /* Fits the lamp's direction and distance, unless it is more than 70 degrees aside, and the strengths of lamp, flash and
  * the rest; the network's confidence in the lamp stays. Without a lamp that found_light_take keeps, all light is scaled
- * by one number a channel. Nothing changes if too little of the object is seen, or if the photograph is explained best
- * without the lamp. MERLIN_NO_MEMORY. */
+ * by one number a channel; a room's coefficients, if most of it is that, are fitted, too. Nothing changes if too little
+ * of the object is seen, or if the photograph is explained best without the lamp. MERLIN_NO_MEMORY. */
 status found_light_fit(const lit_photo *of, float code[MODEL_LIGHTS]);
 
 #endif
