@@ -27,6 +27,8 @@ static const double alike = 0.5, clearly = 0.6, perhaps = 0.85;
  * sides, lit in different places, reach a correlation of 0.67 by chance. */
 enum { FAR_SIDE = 64, FAR_REACH = 16, NEAR = 3 };
 static const double plainly = 0.5, alike_of_two = 0.72;
+/* Least share of the edges of an object that moved so far that lie where the others have none of it. */
+static const double aside = 0.02;
 
 typedef struct shift {
     int x, y; /* pixels to the right and down */
@@ -226,6 +228,29 @@ static void find_level_shifts(level *l)
     }
 }
 
+/* Returns the share of edges in the object's place, as shifted, that lie outside of the object's place. */
+static double share_aside(const level *l, const img *edges, shift by)
+{
+    double all = 1e-9, out = 0;
+    for (int y = first_of(by.y); y < end_of(by.y, l->height); y++) {
+        const float *mask = img_at(&l->mask, 0, y), *at = img_at(&l->mask, 0, y + by.y) + by.x;
+        const float *own = img_at(edges, 0, y + by.y) + by.x;
+        for (int x = first_of(by.x); x < end_of(by.x, l->width); x++) {
+            const double energy = (double)(mask[x] * own[x] * own[x]);
+            all += energy;
+            out += at[x] > 0 ? 0 : energy;
+        }
+    }
+    return out / all;
+}
+
+/* Tells whether the object is seen outside of its place, in a picture or, the other way, in the others: one that moved
+ * takes its outline along; what is lit elsewhere on one that did not move is inside. */
+static bool is_aside(const level *l, int k, shift by)
+{
+    return share_aside(l, &l->edges[k], by) >= aside || share_aside(l, &l->sum, (shift){-by.x, -by.y}) >= aside;
+}
+
 /* Tells whether a picture's edges are those of the others after a large shift. */
 static bool look_far(const level *l, int k, shift *by)
 {
@@ -242,7 +267,8 @@ static bool look_far(const level *l, int k, shift *by)
             *by = at;
         }
     }
-    return far >= (l->capture->count == 2 ? alike_of_two : alike) && 1 - far <= plainly * (1 - near);
+    if (far < (l->capture->count == 2 ? alike_of_two : alike) || 1 - far > plainly * (1 - near)) return false;
+    return !l->capture->mask.data || is_aside(l, k, *by);
 }
 
 static void find_far(level *l)

@@ -127,6 +127,30 @@ static void two_pictures_under_far_lights_did_not_move(void **state)
     capture_drop(&all);
 }
 
+/* Leaves a picture dark but for a square, which is shown so many pixels aside of its place. */
+static void keep_square(merlin_capture *c, int k, int first, int side, int by)
+{
+    uint16_t square[SIZE][SIZE] = {{0}};
+    for (int y = first; y < first + side; y++)
+        memcpy(&square[y + by][first + by], c->picture[k] + y * SIZE + first, (size_t)side * sizeof **square);
+    memcpy(c->picture[k], square, sizeof square);
+}
+
+/* A few places are lit, which are alike, as bands along an outline are under lamps far aside. */
+static void what_is_lit_elsewhere_did_not_move(void **state)
+{
+    (void)state;
+    merlin_capture c, aligned;
+    picture_shifts shifts;
+    make(1, &c);
+    for (int k = 0; k < LIGHTS; k++)
+        keep_square(&c, k, 30, 18, k == LIGHTS - 1 ? 20 : 0);
+    if (align_pictures(&c, &aligned, &shifts) != OK) fail_msg("%s", status_message());
+    assert_int_equal(shifts.moved, 0);
+    align_pictures_free(&c, &aligned);
+    capture_drop(&c);
+}
+
 static void one_picture_has_nothing_to_fit(void **state)
 {
     (void)state;
@@ -148,6 +172,7 @@ int main(void)
         cmocka_unit_test(still_pictures_stay),
         cmocka_unit_test(what_moved_comes_back),
         cmocka_unit_test(what_moved_too_far_is_refused),
+        cmocka_unit_test(what_is_lit_elsewhere_did_not_move),
         cmocka_unit_test(two_pictures_under_far_lights_did_not_move),
         cmocka_unit_test(one_picture_has_nothing_to_fit),
     };
