@@ -12,8 +12,9 @@
 #include "stereo/integrate/integrate.h"
 #include "stereo/methods/solve.h"
 
-/* Least number of pictures whose lights a network has compared. */
-enum { FEWEST = 2 };
+/* Least number of pictures whose lights a network has compared, and largest one of which the networks' normals stay in
+ * part. */
+enum { FEWEST = 2, FEW = 4 };
 
 /* Converts a vector from the lens's space (merlin_maps_lens_place) back to the maps', in which the lens's axes are the
  * rows of the rotation. */
@@ -64,12 +65,21 @@ static void take_spread(const img *spread, merlin_maps *maps)
         if (maps->mask.data[i] >= 0.5f) maps->spread.data[i] = spread->data[i];
 }
 
+/* Returns the share of the networks' normals that stays: under a few near lights they are as good as what is found, and
+ * err differently (docs/notes/several_photographs.md). */
+static float kept_share(const merlin_surface *found, int pictures)
+{
+    return found->lights_near && pictures <= FEW ? 1 / (float)pictures : 0;
+}
+
 static void take(const merlin_surface *found, int pictures, merlin_maps *maps)
 {
+    const float kept = kept_share(found, pictures);
     for (size_t i = 0; i < img_value_count(&maps->mask); i++) {
         if (!(maps->mask.data[i] >= 0.5f)) continue;
         const vec3 n = from_lens(maps, vec3_of(found->normal.data + 3 * i));
-        if (vec3_dot(n, n) > 0) vec3_put(n, maps->normal.data + 3 * i);
+        float *normal = maps->normal.data + 3 * i;
+        if (vec3_dot(n, n) > 0) vec3_put(vec3_normalize(vec3_lerp(n, vec3_of(normal), kept)), normal);
     }
     img_free(&maps->reconstruction);
     if (found->spread.data) take_spread(&found->spread, maps);
