@@ -9,8 +9,10 @@
 #include "optics/light.h"
 #include "optics/sh.h"
 
-/* Pixels across, which are enough, and of the object, fewer of which tell too little. */
-enum { ACROSS = 28, LEAST_SPOTS = 40, LAMP = 0, FLASH, OTHER, SOURCES, COEFFICIENTS = 9 };
+/* Pixels across, which are enough, and of the object, fewer of which tell too little; coefficients of the rest. */
+enum { ACROSS = 28, LEAST_SPOTS = 40, COEFFICIENTS = 9 };
+/* What lights a spot; the third is even light while a lamp's place is searched for, and then the network's rest. */
+enum { LAMP, FLASH, OTHER, SOURCES };
 /* Share of white from which on a channel may be burnt out. */
 static const float UNBURNT = 0.93f;
 /* Residual, as a share of a value plus a tenth of the mean one, from which on it counts less. */
@@ -20,7 +22,6 @@ static const double PLAUSIBLE = 0.4, FLOOR = 0.1;
 static const double TOLD_DIRECTION = 2, TOLD_DISTANCE = 0.33;
 /* Weight of what the network tells of a room's coefficients, as a share of the mean weight of the pixels. */
 static const double TOLD_ROOM = 0.2;
-
 /* So far aside the network tells a lamp's direction as well as this fit. */
 static const float TRUSTED = 70 * DEGREE;
 
