@@ -14,6 +14,14 @@
 #include "optics/brdf.h"
 #include "optics/sh.h"
 
+/* Returns the radiance that a matte surface of unit normal n reflects; nine coefficients may be dark somewhere, where
+ * it is zero. */
+static inline vec3 ambient_diffuse(const real sh[9][3], vec3 albedo, vec3 n)
+{
+    const vec3 e = sh_irradiance(sh, n);
+    return vec3_scale(vec3_mul(albedo, vec3_make(fmax(e.x, 0), fmax(e.y, 0), fmax(e.z, 0))), 1 / PI);
+}
+
 /* Returns ∫ specular(l, v) (n·l) dl, what the lobe reflects of radiance 1 from everywhere, for n·v in [0, 1]. It is a
  * least-squares fit in powers of the roughness and of 1 - n·v to quadrature over roughness 0.03 to 1 and n·v 0.02 to 1:
  * within 0.015, root mean square 0.003. */

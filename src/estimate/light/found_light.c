@@ -17,13 +17,14 @@ static const float LEAST_SURE = 0.5f, FARTHEST = 20, FLASH_ALONE = 0.95f;
 void found_light_take(const float code[MODEL_LIGHTS], merlin_found_light *out)
 {
     const vec3 toward = vec3_of(code + MODEL_LIGHTS_LAMP);
-    const float sure = vec3_length(toward), inverse = code[MODEL_LIGHTS_DISTANCE];
+    const float sure = vec3_length(toward);
+    const bool kept = found_light_has_lamp(code);
     *out = (merlin_found_light){.known = 1, .flash = model_decode_strength(code[MODEL_LIGHTS_FLASH])};
     out->lamp_sure = sure < 1 ? sure : 1;
-    if (sure >= LEAST_SURE) vec3_put(vec3_scale(toward, 1 / sure), out->lamp);
-    out->lamp_distance = inverse > 1 / FARTHEST ? 1 / inverse : 0;
+    if (kept) vec3_put(vec3_scale(toward, 1 / sure), out->lamp);
+    out->lamp_distance = found_light_distance(code[MODEL_LIGHTS_DISTANCE]);
     for (int c = 0; c < 3; c++)
-        out->lamp_strength[c] = sure >= LEAST_SURE ? model_decode_strength(code[MODEL_LIGHTS_STRENGTH + c]) : 0;
+        out->lamp_strength[c] = kept ? model_decode_strength(code[MODEL_LIGHTS_STRENGTH + c]) : 0;
     model_decode_sh(code + MODEL_LIGHTS_REST, out->rest);
 }
 
@@ -32,17 +33,17 @@ bool found_light_has_lamp(const float code[MODEL_LIGHTS])
     return vec3_length(vec3_of(code + MODEL_LIGHTS_LAMP)) >= LEAST_SURE;
 }
 
-static float mean(vec3 v)
+float found_light_distance(float inverse)
 {
-    return (v.x + v.y + v.z) / 3;
+    return inverse > 1 / FARTHEST ? 1 / inverse : 0;
 }
 
 found_light_shares found_light_share(const merlin_found_light *light)
 {
     const float(*rest)[3] = (const float(*)[3])light->rest;
     found_light_shares share = {.flash = LIGHT_POWER * light->flash,
-                                .lamp = LIGHT_POWER * mean(vec3_of(light->lamp_strength)),
-                                .rest = fmaxf(mean(sh_irradiance(rest, vec3_make(0, 0, 1))), 0)};
+                                .lamp = LIGHT_POWER * found_light_mean(vec3_of(light->lamp_strength)),
+                                .rest = fmaxf(found_light_mean(sh_irradiance(rest, vec3_make(0, 0, 1))), 0)};
     const float all = share.flash + share.lamp + share.rest;
     if (!light->known || !(all > 0)) return (found_light_shares){0};
     return (found_light_shares){share.flash / all, share.lamp / all, share.rest / all};

@@ -20,6 +20,13 @@
 void found_light_take(const float code[MODEL_LIGHTS], merlin_found_light *out);
 /* Tells whether found_light_take keeps the lamp. */
 bool found_light_has_lamp(const float code[MODEL_LIGHTS]);
+/* Returns a lamp's distance from the object's middle by its inverse; 0: so far that its light is parallel. */
+float found_light_distance(float inverse);
+/* Returns the mean over the channels. */
+static inline float found_light_mean(vec3 v)
+{
+    return (v.x + v.y + v.z) / 3;
+}
 
 /* Shares of all light that arrives in the object's middle, averaged over the channels: the lamp's wherever it is, and
  * of the rest what reaches a surface that faces the camera. They add up to 1; all zero if nothing is known. */

@@ -11,7 +11,7 @@
 
 /* Pixels across, which are enough, and of the object, fewer of which tell too little; coefficients of the rest. */
 enum { ACROSS = 28, LEAST_SPOTS = 40, COEFFICIENTS = 9 };
-/* What lights a spot; the third is even light while a lamp's place is searched for, and then the network's rest. */
+/* Sources of light; the third is even light while a lamp's place is searched for, and then the network's rest. */
 enum { LAMP, FLASH, OTHER, SOURCES };
 /* Share of white from which on a channel may be burnt out. */
 static const float UNBURNT = 0.93f;
@@ -29,7 +29,7 @@ static const vec3 middle = {0, 0, -1};
 
 typedef struct spot {
     shade_input in;
-    vec3 value, rest; /* radiance; that under the network's rest */
+    vec3 value, flash, rest; /* radiance; that under the flash at strength 1, and under the network's rest */
     float visible;
 } spot;
 
@@ -49,19 +49,20 @@ typedef struct place {
     double cost;
 } place;
 
-static float mean_of(vec3 v)
-{
-    return (v.x + v.y + v.z) / 3;
-}
-
 /* ---- the object's pixels ---- */
 
-/* Returns the light of the network's rest on a spot. */
 static vec3 lit_by_rest(const shade_input *in, const float (*rest)[3])
 {
-    const vec3 matte = vec3_scale(vec3_mul(in->albedo, sh_irradiance(rest, in->normal)), 1 / PI);
-    const vec3 gloss = ambient_specular(rest, in->roughness, in->normal, vec3_normalize(vec3_scale(in->ray, -1)));
-    return vec3_make(fmaxf(matte.x, 0) + gloss.x, fmaxf(matte.y, 0) + gloss.y, fmaxf(matte.z, 0) + gloss.z);
+    return vec3_add(ambient_diffuse(rest, in->albedo, in->normal),
+                    ambient_specular(rest, in->roughness, in->normal, vec3_normalize(vec3_scale(in->ray, -1))));
+}
+
+static vec3 lit_by_flash(const shade_input *without)
+{
+    shade_input in = *without;
+    in.light = vec3_make(0, 0, 0);
+    in.power = LIGHT_POWER;
+    return shade_point(&in);
 }
 
 static void add_spot(const lit_photo *of, const float (*rest)[3], int x, int y, fitting *f)
@@ -69,7 +70,7 @@ static void add_spot(const lit_photo *of, const float (*rest)[3], int x, int y, 
     const surface *m = of->maps;
     const camera c = surface_camera(m);
     const vec3 value = vec3_of(img_at(of->photo, x, y));
-    if (!(*img_at(&m->mask, x, y) > 0.5f) || !(mean_of(value) > 0)) return;
+    if (!(*img_at(&m->mask, x, y) > 0.5f) || !(found_light_mean(value) > 0)) return;
     if (fmaxf(value.x, fmaxf(value.y, value.z)) > UNBURNT * of->white) return;
     spot *s = &f->spots[f->count++];
     s->in = (shade_input){.albedo = vec3_of(img_at(&m->albedo, x, y)),
@@ -78,6 +79,7 @@ static void add_spot(const lit_photo *of, const float (*rest)[3], int x, int y, 
                           .depth = *img_at(&m->depth, x, y),
                           .ray = camera_point(&c, (float)x + 0.5f, (float)y + 0.5f, 1)};
     s->value = value;
+    s->flash = lit_by_flash(&s->in);
     s->rest = lit_by_rest(&s->in, rest);
     s->visible = of->visibility->data ? *img_at(of->visibility, x, y) : 1;
 }
@@ -111,23 +113,12 @@ static status fitting_new(const lit_photo *of, const float code[MODEL_LIGHTS], f
     return OK;
 }
 
-/* ---- light of one strength ---- */
-
-static vec3 lit_by_flash(const spot *s)
-{
-    shade_input in = s->in;
-    in.light = vec3_make(0, 0, 0);
-    in.power = LIGHT_POWER;
-    return shade_point(&in);
-}
-
 /* Lights a spot by a lamp that is as strong in the object's middle, whatever its distance. */
 static vec3 lit_by_lamp(const spot *s, const place *at)
 {
     shade_input in = s->in;
-    const bool far = at->inverse < 0.05f;
-    const float distance = far ? 1 : 1 / at->inverse;
-    in.light = vec3_fma(far ? vec3_scale(in.ray, in.depth) : middle, distance, at->toward);
+    const float from_middle = found_light_distance(at->inverse), distance = from_middle > 0 ? from_middle : 1;
+    in.light = vec3_fma(from_middle > 0 ? middle : vec3_scale(in.ray, in.depth), distance, at->toward);
     in.power = LIGHT_POWER * distance * distance;
     return vec3_scale(shade_point(&in), s->visible);
 }
@@ -160,13 +151,25 @@ static double residual(const fitting *f, int n, const double *x, int i)
     return lit - (double)f->value[i];
 }
 
+/* Returns the size that a spot's residual is a share of. */
+static double scale_of(const fitting *f, int i)
+{
+    return (double)f->value[i] + f->floor;
+}
+
+/* Returns a spot's weight in least squares, by what the last strengths leave unexplained of it. */
+static double weight_of(const fitting *f, int i, double left)
+{
+    const double scale = scale_of(f, i), r = left / scale / PLAUSIBLE;
+    return 1 / (scale * scale * sqrt(1 + r * r));
+}
+
 /* Sums up the equations of the first n sources, each weighted by how well the last strengths explain it. */
 static void sum_equations(const fitting *f, int n, const double x[SOURCES], bool first, double (*a)[COEFFICIENTS],
                           double b[SOURCES])
 {
     for (int i = 0; i < f->count; i++) {
-        const double scale = (double)f->value[i] + f->floor, r = first ? 0 : residual(f, n, x, i) / scale / PLAUSIBLE;
-        const double weight = 1 / (scale * scale * sqrt(1 + r * r));
+        const double weight = weight_of(f, i, first ? 0 : residual(f, n, x, i));
         for (int s = 0; s < n; s++) {
             const double of = weight * (double)f->source[s][i];
             b[s] += of * (double)f->value[i];
@@ -192,7 +195,7 @@ static double fit_strengths(fitting *f, int n, double x[SOURCES])
         solve(n, a, b, 0, x);
     }
     for (int i = 0; i < f->count; i++) {
-        const double r = residual(f, n, x, i) / ((double)f->value[i] + f->floor) / PLAUSIBLE;
+        const double r = residual(f, n, x, i) / scale_of(f, i) / PLAUSIBLE;
         cost += log1p(r * r);
     }
     return cost / f->count;
@@ -204,7 +207,7 @@ static void judge(fitting *f, place *at)
 {
     double x[SOURCES];
     for (int i = 0; i < f->count; i++)
-        f->source[LAMP][i] = mean_of(lit_by_lamp(&f->spots[i], at));
+        f->source[LAMP][i] = found_light_mean(lit_by_lamp(&f->spots[i], at));
     const double from_told = (double)(at->inverse - f->told_inverse);
     at->cost = log(fit_strengths(f, SOURCES, x) + 1e-6) + TOLD_DIRECTION * (1 - (double)vec3_dot(at->toward, f->told)) +
                TOLD_DISTANCE * from_told * from_told;
@@ -251,9 +254,9 @@ static place best_place(fitting *f)
 {
     if (f->told.z < cosf(TRUSTED)) return (place){f->told, f->told_inverse, 0};
     for (int i = 0; i < f->count; i++) { /* in the channels' mean, which tells it as well as each channel would */
-        f->value[i] = mean_of(f->spots[i].value);
-        f->source[FLASH][i] = mean_of(lit_by_flash(&f->spots[i]));
-        f->source[OTHER][i] = mean_of(f->spots[i].in.albedo); /* from everywhere, as bounces are about */
+        f->value[i] = found_light_mean(f->spots[i].value);
+        f->source[FLASH][i] = found_light_mean(f->spots[i].flash);
+        f->source[OTHER][i] = found_light_mean(f->spots[i].in.albedo); /* from everywhere, as bounces are about */
     }
     place at = first_place(f);
     float nearer = 0.25f, step = 14 * DEGREE;
@@ -276,7 +279,7 @@ static void fit_channel(fitting *f, const place *at, int c, double x[SOURCES])
         const spot *s = &f->spots[i];
         f->value[i] = channel_of(s->value, c);
         f->source[LAMP][i] = channel_of(lit_by_lamp(s, at), c);
-        f->source[FLASH][i] = channel_of(lit_by_flash(s), c);
+        f->source[FLASH][i] = channel_of(s->flash, c);
         f->source[OTHER][i] = channel_of(s->rest, c);
     }
     fit_strengths(f, SOURCES, x);
@@ -290,7 +293,7 @@ static double fit_whole(fitting *f, float flash, int c)
     for (int i = 0; i < f->count; i++) {
         const spot *s = &f->spots[i];
         f->value[i] = channel_of(s->value, c);
-        f->source[0][i] = flash * channel_of(lit_by_flash(s), c) + channel_of(s->rest, c);
+        f->source[0][i] = flash * channel_of(s->flash, c) + channel_of(s->rest, c);
     }
     fit_strengths(f, 1, x);
     return x[0];
@@ -315,9 +318,7 @@ static void fit_room(const fitting *f, int c, double by, double change[COEFFICIE
     for (int i = 0; i < f->count; i++) {
         const spot *s = &f->spots[i];
         real basis[COEFFICIENTS];
-        const double left = -residual(f, 1, &by, i), scale = (double)f->value[i] + f->floor,
-                     r = left / scale / PLAUSIBLE;
-        const double weight = 1 / (scale * scale * sqrt(1 + r * r));
+        const double left = -residual(f, 1, &by, i), weight = weight_of(f, i, left);
         sh_basis(s->in.normal, basis);
         for (int k = 0; k < COEFFICIENTS; k++)
             basis[k] *= sh_cosine_band(k) * channel_of(s->in.albedo, c) / PI;

@@ -69,8 +69,7 @@ static void add(job *j)
 
 static vec3 shade_ambient(const job *j, const pixel *p)
 {
-    vec3 e = sh_irradiance(j->sh, p->normal);
-    return vec3_scale(vec3_mul(p->albedo, vec3_make(fmaxf(e.x, 0), fmaxf(e.y, 0), fmaxf(e.z, 0))), 1 / PI);
+    return ambient_diffuse(j->sh, p->albedo, p->normal);
 }
 
 void surface_add_ambient(const surface *s, const float sh[9][3], img *image)
