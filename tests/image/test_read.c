@@ -135,6 +135,31 @@ static void pngs_of_every_layout_show_the_same(void **state)
 }
 
 /* Writes a line of three grey pixels; exif (NULL: none) follows them if it is late. */
+/* A mask of one bit a pixel and a drawing with a palette, plain as they are, are packed a thousand times smaller, and
+ * eight and four times as large again when they are read. */
+static void plain_pngs_of_few_bits_are_not_taken_for_damaged(void **state)
+{
+    (void)state;
+    enum { WIDTH = 6000, HEIGHT = 400 };
+    img mask = {0};
+    uint8_t *codes = calloc(WIDTH * HEIGHT, 1);
+    assert_non_null(codes);
+    memset(codes, 255, WIDTH * HEIGHT / 2);
+    VipsImage *image = fixture(codes, WIDTH, HEIGHT, 1, VIPS_INTERPRETATION_B_W);
+    for (int bits = 1; bits <= 8; bits *= 2)
+        for (int palette = 0; palette < 2; palette++) {
+            assert_int_equal(vips_pngsave(image, scratch_path("few.png"), "bitdepth", bits, "palette", palette,
+                                          "compression", 9, NULL),
+                             0);
+            if (img_read_mask(scratch_path("few.png"), &mask) != OK) fail_msg("%d bits: %s", bits, status_message());
+            assert_int_equal(mask.width, WIDTH);
+            assert_true(mask.data[0] == 1 && mask.data[WIDTH * HEIGHT - 1] == 0);
+            img_free(&mask);
+        }
+    g_object_unref(image);
+    free(codes);
+}
+
 static void write_png(const char *path, const uint8_t codes[3], double gamma, uint8_t exif[26], bool late)
 {
     FILE *f = fopen(path, "wb");
@@ -372,6 +397,7 @@ int main(void)
         cmocka_unit_test(linear_png_round_trips_within_half_a_code),
         cmocka_unit_test(every_photograph_format_is_read),
         cmocka_unit_test(pngs_of_every_layout_show_the_same),
+        cmocka_unit_test(plain_pngs_of_few_bits_are_not_taken_for_damaged),
         cmocka_unit_test(the_gamma_of_a_png_is_honoured),
         cmocka_unit_test(exif_orientation_turns_the_picture),
         cmocka_unit_test(a_png_is_turned_wherever_its_exif_stands),

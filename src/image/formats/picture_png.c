@@ -32,7 +32,8 @@ typedef struct reader {
     picture_layout layout;
     chunks chunks;
     bool profile, interlaced;
-    uint8_t *codes; /* codes of a row, or of all rows if they are interlaced */
+    size_t packed_row; /* bytes of a row as in the file, before pixels of less than a byte and palettes are expanded */
+    uint8_t *codes;    /* codes of a row, or of all rows if they are interlaced */
     png_bytep *rows;
     picture_rows *to;
     char words[128];
@@ -188,6 +189,7 @@ static bool read_head(reader *r)
     png_read_info(r->png, r->info);
     r->layout.width = (int)png_get_image_width(r->png, r->info);
     r->layout.height = (int)png_get_image_height(r->png, r->info);
+    r->packed_row = png_get_rowbytes(r->png, r->info);
     r->interlaced = png_get_interlace_type(r->png, r->info) != PNG_INTERLACE_NONE;
     r->layout.sample = png_get_bit_depth(r->png, r->info) == 16 ? PICTURE_UINT16 : PICTURE_UINT8;
     return true;
@@ -258,7 +260,7 @@ static status read_rows(reader *r, const char *path)
 static bool is_long_enough(const reader *r)
 {
     const double most = 1032;
-    return (double)line_bytes(r) * r->layout.height <= most * ((double)r->chunks.packed + 64);
+    return (double)r->packed_row * r->layout.height <= most * ((double)r->chunks.packed + 64);
 }
 
 static status check_budget(const reader *r, const char *path)
