@@ -20,6 +20,9 @@
 
 #include <cmocka.h>
 
+/* Kinds of light as often as by default. */
+static const train_config usual = {.flash_alone = 1.0 / 3};
+
 enum { SIZE = 64, PIXELS = SIZE * SIZE, SAMPLES = 4, FLOATS = 108 * PIXELS };
 
 typedef struct fixture {
@@ -202,7 +205,7 @@ static void kinds_come_as_often_as_they_should(void **state)
         train_camera lens = train_camera_perfect();
         train_mixture m;
         if (i % 300 == 0) assert_int_equal(train_dataset_get(f->data, (size_t)i / 300, 0, &f->view), OK);
-        train_mixture_draw(&f->view, &r, NULL, &lens, &m);
+        train_mixture_draw(&f->view, &usual, &r, NULL, &lens, &m);
         kinds[m.kind]++;
         lamps += m.strongest >= 0;
         told += m.told_flash;
@@ -216,6 +219,27 @@ static void kinds_come_as_often_as_they_should(void **state)
     assert_true(abs(known - DRAWS * 3 / 4) < 60);
 }
 
+static void kinds_come_as_often_as_configured(void **state)
+{
+    fixture *f = *state;
+    enum { DRAWS = 1200 };
+    const train_config c = {.flash_alone = 0.05, .flash_in_room = 0.25, .lamp_alone = 0.5};
+    int flash = 0, both = 0, alone = 0;
+    assert_int_equal(train_dataset_get(f->data, 0, 0, &f->view), OK);
+    for (int i = 0; i < DRAWS; i++) {
+        rng r = rng_at(14, (uint64_t)i, 0);
+        train_camera lens = train_camera_perfect();
+        train_mixture m;
+        train_mixture_draw(&f->view, &c, &r, NULL, &lens, &m);
+        const bool lit = vec3_length(m.flash) > 0, room = vec3_length(m.room) > 0;
+        flash += m.kind == TRAIN_FLASH;
+        both += lit && room && m.strongest < 0;
+        alone += !lit && !room && m.strongest >= 0 && m.presence == 1;
+    }
+    assert_true(abs(flash - DRAWS / 20) < 30 && abs(both - DRAWS / 4) < 60);
+    assert_true(alone > DRAWS * 4 / 10 && alone < DRAWS * 11 / 20); /* a lamp behind the object lights nothing */
+}
+
 /* The flash or the room alone would repeat what a first picture shows. */
 static void further_pictures_are_mixed(void **state)
 {
@@ -225,7 +249,7 @@ static void further_pictures_are_mixed(void **state)
         rng r = rng_at(4, (uint64_t)i, 0);
         train_camera lens = train_camera_perfect();
         train_mixture m;
-        train_mixture_draw(&f->view, &r, &(train_capture){.picture = 1}, &lens, &m);
+        train_mixture_draw(&f->view, &usual, &r, &(train_capture){.picture = 1}, &lens, &m);
         assert_int_equal(m.kind, TRAIN_MIXED);
         assert_false(m.told_flash);
     }
@@ -246,7 +270,7 @@ static void a_torch_lights_each_picture_from_elsewhere(void **state)
             train_camera lens = train_camera_perfect();
             train_mixture m;
             if (!capture.torch) continue;
-            train_mixture_draw(&f->view, &r, &capture, &lens, &m);
+            train_mixture_draw(&f->view, &usual, &r, &capture, &lens, &m);
             assert_int_equal(m.kind, TRAIN_MIXED);
             assert_true(m.flash.x == 0 && m.strongest >= 0 && m.strongest != last);
             assert_true(picture == 0 || m.room.x == room);
@@ -269,7 +293,7 @@ static void exposure_leaves_neither_darkness_nor_white_alone(void **state)
         train_camera lens = train_camera_perfect();
         train_mixture m;
         assert_int_equal(train_dataset_get(f->data, (size_t)i % SAMPLES, 0, v), OK);
-        train_mixture_draw(v, &r, NULL, &lens, &m);
+        train_mixture_draw(v, &usual, &r, NULL, &lens, &m);
         if (m.kind == TRAIN_FLASH) continue;
         prepare(f, &m, &lens);
         float brightest = 0;
@@ -291,7 +315,7 @@ static void nobody_photographs_darkness(void **state)
         rng r = rng_at(10, (uint64_t)i, 0);
         train_camera lens = train_camera_perfect();
         train_mixture m;
-        train_mixture_draw(v, &r, NULL, &lens, &m);
+        train_mixture_draw(v, &usual, &r, NULL, &lens, &m);
         assert_true(isfinite(lens.gain[0]) && lens.gain[0] > 0 && m.flash.x > 0);
         assert_int_equal(m.strongest, -1);
     }
@@ -318,7 +342,7 @@ static void a_camera_exposes_for_what_is_lit(void **state)
         rng r = rng_at(12, (uint64_t)i, 0);
         train_camera lens = train_camera_perfect();
         train_mixture m;
-        train_mixture_draw(v, &r, NULL, &lens, &m);
+        train_mixture_draw(v, &usual, &r, NULL, &lens, &m);
         lamps += m.strongest >= 0;
         for (int c = 0; c < 3; c++)
             assert_true(lens.gain[c] < 2000);
@@ -392,6 +416,7 @@ int main(void)
         cmocka_unit_test(a_photograph_is_the_sum_of_its_lights),
         cmocka_unit_test(the_truth_about_a_lamp_makes_the_photograph),
         cmocka_unit_test(kinds_come_as_often_as_they_should),
+        cmocka_unit_test(kinds_come_as_often_as_configured),
         cmocka_unit_test(a_torch_lights_each_picture_from_elsewhere),
         cmocka_unit_test(further_pictures_are_mixed),
         cmocka_unit_test(exposure_leaves_neither_darkness_nor_white_alone),

@@ -92,6 +92,7 @@ static void wrong_configurations_are_refused_by_key(void **unused)
     refuses("\"seed\": 1,", "", "seed");
     refuses("\"seed\": 1,", "\"seed\": 1, \"jpeg\": 1.5,", "jpeg");
     refuses("\"seed\": 1,", "\"seed\": 1, \"camera_turn\": true,", "camera_turn");
+    refuses("\"seed\": 1,", "\"seed\": 1, \"flash_in_room\": 0.4, \"lamp_alone\": 0.2,", "five sixths");
     refuses("\"seed\": 1,", "\"seed\": 1, \"jpeg\": 0.5, \"jpeg\": 0.5,", "jpeg");
 }
 

@@ -82,6 +82,8 @@ static const struct run {
     {"table2/sang", 0xf699d3c05d61d008},
     {"merlin-any/07-128", 0xf269b25598af5e61},
     {"merlin-any/08-256", 0x931749a8ca7c454c},
+    {"merlin-any/09-128", 0x1de0d96206db84d7},
+    {"merlin-any/10-256", 0xcfd08ec3f458db68},
 };
 enum { RUNS = sizeof runs / sizeof *runs };
 

@@ -47,6 +47,9 @@ static const optional optionals[] = {
     {"most_pictures", 64, offsetof(train_config, most_pictures), 1},
     {"single_rate_scale", 10, offsetof(train_config, single_rate_scale), 1},
     {"lamp_weight", 1e4, offsetof(train_config, lamp_weight), 0.25},
+    {"flash_alone", 1, offsetof(train_config, flash_alone), 1.0 / 3},
+    {"flash_in_room", 1, offsetof(train_config, flash_in_room), 0},
+    {"lamp_alone", 1, offsetof(train_config, lamp_alone), 0},
     {"weight_decay", 1, offsetof(train_config, weight_decay), 0},
     {"average_decay", 0.999999, offsetof(train_config, average_decay), 0},
 };
@@ -61,6 +64,16 @@ static status read_optionals(json_object *o, train_config *c)
         memcpy((char *)c + optionals[i].offset, &value, sizeof value);
     }
     return s;
+}
+
+/* A sixth of the photographs is by the surroundings alone (train/samples/mixture.h). */
+static status check_kinds(const char *where, const train_config *c)
+{
+    if (c->flash_alone + c->flash_in_room + c->lamp_alone <= 5.0 / 6) return OK;
+    return fail(MERLIN_BAD_INPUT,
+                "%s: \"flash_alone\", \"flash_in_room\" and \"lamp_alone\" must not make more than five sixths of the "
+                "photographs",
+                where);
 }
 
 static status check_pictures(const char *where, const train_config *c)
@@ -112,6 +125,7 @@ static status read_training(json_object *o, const char *where, train_config *c)
     if (s == OK) s = json_number(o, "colour_jitter", 0, 1, &c->colour_jitter);
     if (s == OK) s = read_optionals(o, c);
     if (s == OK) s = check_pictures(where, c);
+    if (s == OK) s = check_kinds(where, c);
     if (s == OK) s = json_number(o, "memory_gib", 0, 1e5, &c->memory_gib);
     if (s == OK) s = read_intervals(o, c);
     if (s == OK && c->validation_count % c->batch)

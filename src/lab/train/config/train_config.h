@@ -39,13 +39,16 @@ typedef struct train_config {
     double single_rate_scale; /* ratio of the rate of parameters that the model of one photograph has, too, to that of
                                * those which only a model of several has; 1 by default */
     double lamp_weight;       /* of the loss for the strongest lamp's direction; 0.25 by default */
-    double weight_decay;      /* of convolutions and fully connected layers, decoupled (nn_adam_options) */
-    double average_decay;     /* of the weights' mean (train/average.h), which is validated and exported; 0: the last
-                               * weights are */
-    double memory_gib;        /* samples beyond this are read from disk each time */
-    int validation_count;     /* number of the folder's last samples that are for validation; a multiple of batch */
-    int validation_steps;     /* between validations; 0: one after the last step, and no weights before */
-    int curve_steps;          /* number of steps whose mean is a row of curves.csv */
+    /* Shares of photographs under any light that are by a flash alone (a third by default), by a flash in a room, and
+     * by one lamp in the dark (both 0 by default, apart from those that are mixed so by chance): */
+    double flash_alone, flash_in_room, lamp_alone;
+    double weight_decay;  /* of convolutions and fully connected layers, decoupled (nn_adam_options) */
+    double average_decay; /* of the weights' mean (train/average.h), which is validated and exported; 0: the last
+                           * weights are */
+    double memory_gib;    /* samples beyond this are read from disk each time */
+    int validation_count; /* number of the folder's last samples that are for validation; a multiple of batch */
+    int validation_steps; /* between validations; 0: one after the last step, and no weights before */
+    int curve_steps;      /* number of steps whose mean is a row of curves.csv */
     double checkpoint_minutes;
 } train_config;
 

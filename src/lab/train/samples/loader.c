@@ -204,7 +204,7 @@ static status fill_any(train_loader *l, item *it)
     rng steady = rng_at(seed_of(l), 2 * it->first + l->validation, TRAIN_STREAM_CAPTURE);
     const bool one = l->source.pictures == 1;
     const train_capture capture = train_capture_draw(&steady, (int)(it->presentation - it->first));
-    train_mixture_draw(&it->view, &light, one ? NULL : &capture, &lens, &mixture);
+    train_mixture_draw(&it->view, c, &light, one ? NULL : &capture, &lens, &mixture);
     if (capture.picture > 0 && !l->validation) move_hand(l, it, &mixture);
     /* one camera took all pictures of an object */
     if (!l->validation) train_camera_add_response(one ? &light : &steady, &lens);

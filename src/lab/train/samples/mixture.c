@@ -12,6 +12,7 @@
 
 /* Share of the light from which on a lamp counts as fully present. */
 static const float LAMP_SHARE = 1.0f / 6;
+static const float ROOM_ALONE = 1.0f / 6;           /* share of photographs in the light of the surroundings alone */
 static const float COLDEST = 10000, WARMEST = 2500; /* colour temperatures of lamps, kelvin */
 /* Range of automatic exposure: logarithm of the 95th percentile of the object's radiance over the sensor's white; a
  * camera exposes for the whole frame, whose content is unknown. */
@@ -195,21 +196,42 @@ static void draw_torch(const train_view *v, const means *m, const train_capture 
     out->lamp[which] = scaled(c->color, strength / fmaxf(m->lamp[which], least));
 }
 
-void train_mixture_draw(const train_view *v, rng *r, const train_capture *capture, train_camera *lens,
-                        train_mixture *out)
+/* Chooses which of the kinds of light a photograph shows; which: uniform in [0, 1). */
+static void draw_kind(const train_view *v, const means *m, const train_config *c, float which, rng *r,
+                      train_mixture *out)
+{
+    const float flash = (float)c->flash_alone, room = flash + ROOM_ALONE, both = room + (float)c->flash_in_room;
+    const float least = 0.1f * m->flash + 1e-6f;
+    out->kind = which < flash ? TRAIN_FLASH : which < room ? TRAIN_ROOM : TRAIN_MIXED;
+    if (which < flash) {
+        out->flash = vec3_make(1, 1, 1);
+    } else if (which < room) {
+        out->room = vec3_make(1, 1, 1);
+    } else if (which < both) {
+        out->flash = scaled(vec3_make(1, 1, 1), draw_weight(r) / fmaxf(m->flash, least));
+        out->room = scaled(vec3_make(1, 1, 1), draw_weight(r) / fmaxf(m->room, least));
+    } else if (which < both + (float)c->lamp_alone) {
+        const int k = rng_below(r, v->lamp_count);
+        out->lamp[k] = scaled(draw_color(r), 1 / fmaxf(m->lamp[k], least));
+    } else {
+        draw_mixed(v, m, r, out);
+    }
+}
+
+void train_mixture_draw(const train_view *v, const train_config *c, rng *r, const train_capture *capture,
+                        train_camera *lens, train_mixture *out)
 {
     const bool torch = capture && capture->torch, further = capture && capture->picture > 0;
     const means m = measure(v);
     float which = rng_uniform(r), target = expf(rng_range(r, DARKEST, BRIGHTEST)), share = rng_range(r, 0.5f, 1);
     bool known = rng_uniform(r) < 0.75f, told = rng_uniform(r) < 0.5f;
-    const train_kind kind = which < 1.0f / 3 ? TRAIN_FLASH : which < 0.5f ? TRAIN_ROOM : TRAIN_MIXED;
-    *out = (train_mixture){.kind = torch || further ? TRAIN_MIXED : kind};
-    if (out->kind == TRAIN_FLASH) out->flash = vec3_make(1, 1, 1);
-    if (out->kind == TRAIN_ROOM) out->room = vec3_make(1, 1, 1);
+    *out = (train_mixture){.kind = TRAIN_MIXED};
     if (torch)
         draw_torch(v, &m, capture, r, out);
-    else if (out->kind == TRAIN_MIXED)
+    else if (further)
         draw_mixed(v, &m, r, out);
+    else
+        draw_kind(v, &m, c, which, r, out);
     ensure_light(v, &m, out);
     find_strongest(v, &m, out);
     out->lens_known = known;
@@ -217,8 +239,8 @@ void train_mixture_draw(const train_view *v, rng *r, const train_capture *captur
     if (out->kind == TRAIN_FLASH) return; /* exposed as rendered, which tells dark objects from bright ones */
     balance(color_of(v, &m, out), share, lens->gain);
     float exposure = target * lens->white / bright_part(v, out, amount_of(v, &m, out));
-    for (int c = 0; c < 3; c++)
-        lens->gain[c] *= exposure;
+    for (int k = 0; k < 3; k++)
+        lens->gain[k] *= exposure;
 }
 
 /* ---- targets: what the network has to predict about the light ------------------------------------------------------

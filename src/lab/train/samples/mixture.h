@@ -3,7 +3,7 @@
  * surroundings. Light is additive, so that any mixture is exact.
  *
  *     train_mixture m;
- *     train_mixture_draw(&view, &rng, NULL, &lens, &m);
+ *     train_mixture_draw(&view, &config, &rng, NULL, &lens, &m);
  *     status s = train_prepare_any(&view, &m, &lens, target, &rng);      after train_dataset_get
  *
  * The light that the network has to predict is stored beside the maps: see model.h, "lighting": "any". */
@@ -12,8 +12,8 @@
 
 #include "lab/train/samples/prepare.h"
 
-/* Kinds of mixtures. A third of the photographs shows only a flash, as bright as in the samples; a sixth only the
- * surroundings; the rest any of them and up to two lamps, exposed as cameras do. */
+/* Kinds of mixtures. A third of the photographs, or the configured share, shows only a flash, as bright as in the
+ * samples; a sixth only the surroundings; the rest any of them and up to two lamps, exposed as cameras do. */
 typedef enum train_kind { TRAIN_FLASH, TRAIN_ROOM, TRAIN_MIXED } train_kind;
 
 typedef struct train_mixture {
@@ -39,11 +39,11 @@ typedef struct train_capture {
 /* Chooses what an object's pictures have in common. steady: a generator that all of them share. */
 train_capture train_capture_draw(rng *steady, int picture);
 
-/* Chooses a mixture. capture: NULL of the only picture of an object. Of several, all but the first are mixed ones, as
- * the same flash or surroundings alone would only repeat what it shows. lens: as set by train_camera_draw; its gain
- * becomes that of the exposure and white balance which a camera chooses. */
-void train_mixture_draw(const train_view *v, rng *r, const train_capture *capture, train_camera *lens,
-                        train_mixture *out);
+/* Chooses a mixture, with the kinds' shares of c. capture: NULL of the only picture of an object. Of several, all but
+ * the first are mixed ones, as the same flash or surroundings alone would only repeat what it shows. lens: as set by
+ * train_camera_draw; its gain becomes that of the exposure and white balance which a camera chooses. */
+void train_mixture_draw(const train_view *v, const train_config *c, rng *r, const train_capture *capture,
+                        train_camera *lens, train_mixture *out);
 
 /* Chooses how far the hand that holds the camera has moved since the object's first picture. steady: a generator that
  * all its pictures share, as a third of all cameras stand on something; r: the picture's own. */
