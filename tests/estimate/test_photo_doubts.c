@@ -139,12 +139,32 @@ static void every_doubt_has_a_code_and_words(void **state)
     merlin_maps_free(&maps);
 }
 
+/* Normals of a surface that fills the picture are further off than those of an object with an outline. */
+static void unrefined_surfaces_without_an_outline_are_doubted_more(void **state)
+{
+    (void)state;
+    char object[MERLIN_WARNING_WORDS], filled[MERLIN_WARNING_WORDS];
+    merlin_maps maps;
+    make(&maps, 20, 10, 100, 80);
+    maps.photographs = 12;
+    merlin_doubt_message(&maps, MERLIN_DOUBT_NOT_REFINED, object, sizeof object);
+    maps.doubts = MERLIN_DOUBT_NO_OBJECT;
+    merlin_doubt_message(&maps, MERLIN_DOUBT_NOT_REFINED, filled, sizeof filled);
+    assert_non_null(strstr(object, "15 to 25 degrees"));
+    assert_non_null(strstr(filled, "30 degrees and more"));
+    merlin_maps_free(&maps);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_good_photograph_has_no_doubt), cmocka_unit_test(what_the_mask_shows_is_told),
-        cmocka_unit_test(light_from_behind_is_told),      cmocka_unit_test(what_the_pixels_show_is_told),
-        cmocka_unit_test(what_exif_says_is_told),         cmocka_unit_test(every_doubt_has_a_code_and_words),
+        cmocka_unit_test(a_good_photograph_has_no_doubt),
+        cmocka_unit_test(what_the_mask_shows_is_told),
+        cmocka_unit_test(light_from_behind_is_told),
+        cmocka_unit_test(what_the_pixels_show_is_told),
+        cmocka_unit_test(what_exif_says_is_told),
+        cmocka_unit_test(every_doubt_has_a_code_and_words),
+        cmocka_unit_test(unrefined_surfaces_without_an_outline_are_doubted_more),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -258,6 +258,20 @@ static double percent(float share)
     return 100 * (double)share;
 }
 
+/* Without an outline the network's shape of a surface that fills the picture is a guess (36 and 53 degrees inside of
+ * the owl and the cat of docs/captures.md). */
+static int unrefined_words(const merlin_maps *maps, char *text, size_t size)
+{
+    const bool whole = maps->doubts & MERLIN_DOUBT_NO_OBJECT;
+    return snprintf(text, size,
+                    "%s: shape is the network's alone, whose normals are off by %s; more pictures, all from one place, "
+                    "under lights from more sides, or a list of the lights (--lights) give a better one",
+                    maps->photographs < PHOTOGRAPHS_ENOUGH
+                        ? "these fewer than 7 pictures do not tell where their lights are"
+                        : "photometric stereo does not find the lights of these pictures",
+                    whole ? "30 degrees and more where a surface fills the picture" : "15 to 25 degrees");
+}
+
 /* Writes the text of a warning about maps that were read and corrected. */
 static int mended_words(const merlin_maps *maps, merlin_doubt doubt, char *text, size_t size)
 {
@@ -304,12 +318,7 @@ int merlin_doubt_message(const merlin_maps *maps, merlin_doubt doubt, char *text
     case MERLIN_DOUBT_FIRST_FRAME:
         return snprintf(text, room, "it is an animation, of whose %d pictures the first alone was read", maps->frames);
     case MERLIN_DOUBT_NOT_REFINED:
-        return snprintf(text, room,
-                        "%s: shape is the network's alone, whose normals are off by 15 to 25 degrees; more pictures, "
-                        "all from one place, under lights from more sides, give a better one",
-                        maps->photographs < PHOTOGRAPHS_ENOUGH
-                            ? "these fewer than 7 pictures do not tell where their lights are"
-                            : "photometric stereo does not find the lights of these pictures");
+        return unrefined_words(maps, text, room);
     case MERLIN_DOUBT_OBJECT_SMALL:
         return snprintf(text, room, "the object has %zu pixels alone, of the 65,000 that the model is made for",
                         coverage_of(maps).object);
