@@ -182,6 +182,44 @@ static void more_areas_than_two_are_refused_by_their_values(void **state)
     assert_refused(save(wide, 1, VIPS_FORMAT_USHORT, "wide.png"), "3 values (0, 1, 2 of 65535)");
 }
 
+enum { LARGE = 400 };
+
+/* Saves a disc with a soft edge, as a blur of this standard deviation makes it; beyond: what surrounds a square around
+ * it, or -1. */
+static const char *save_disc(float blur, int beyond)
+{
+    uint8_t *codes = malloc(LARGE * LARGE);
+    assert_non_null(codes);
+    for (int i = 0; i < LARGE * LARGE; i++) {
+        const float x = (float)(i % LARGE) - 199.5f, y = (float)(i / LARGE) - 189.5f;
+        const float covered = 0.5f * erfcf((sqrtf(x * x + y * y) - 110) / (blur * sqrtf(2)));
+        codes[i] = (uint8_t)(beyond >= 0 && i % LARGE < 40 ? beyond : (int)(255 * covered + 0.5f));
+    }
+    VipsImage *image = vips_image_new_from_memory_copy(codes, LARGE * LARGE, LARGE, LARGE, 1, VIPS_FORMAT_UCHAR);
+    free(codes);
+    assert_non_null(image);
+    assert_int_equal(vips_image_write_to_file(image, scratch_path("disc.png"), NULL), 0);
+    g_object_unref(image);
+    return scratch_path("disc.png");
+}
+
+/* The last steps of a wide soft edge, 254 and 1, are areas of a few pixels' width. */
+static void soft_edges_of_any_width_are_no_areas(void **state)
+{
+    (void)state;
+    for (float blur = 0.5f; blur < 25; blur *= 1.25f) {
+        img mask;
+        if (img_read_mask(save_disc(blur, -1), &mask) != OK) fail_msg("blur %g: %s", (double)blur, status_message());
+        for (int i = 0; i < LARGE * LARGE; i++) {
+            const float x = (float)(i % LARGE) - 199.5f, y = (float)(i / LARGE) - 189.5f, r = sqrtf(x * x + y * y);
+            if (fabsf(r - 110) > 1.5f) assert_int_equal(mask.data[i] >= 0.5f, r < 110);
+        }
+        img_free(&mask);
+    }
+    assert_refused(save_disc(3, 128), "areas of ");
+    assert_refused(save_disc(12, 128), "areas of ");
+}
+
 static void values_that_are_neither_two_nor_half_white_are_refused(void **state)
 {
     (void)state;
@@ -272,6 +310,7 @@ int main(void)
         cmocka_unit_test(soft_edges_keep_their_coverage),
         cmocka_unit_test(noise_of_jpeg_about_two_values_is_no_more_values),
         cmocka_unit_test(more_areas_than_two_are_refused_by_their_values),
+        cmocka_unit_test(soft_edges_of_any_width_are_no_areas),
         cmocka_unit_test(values_that_are_neither_two_nor_half_white_are_refused),
         cmocka_unit_test(photographs_are_refused),
         cmocka_unit_test(floats_beyond_white_have_a_unit_of_their_own),

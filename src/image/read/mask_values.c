@@ -28,6 +28,13 @@ static const float noise = 0.25f;
  * do and those of wide soft edges do not. */
 static const double most_between = 0.5;
 
+/* A soft edge's values are passed in steps of this at most, from and to values beyond them, but for few of the pixels
+ * around; they are as frequent as the values about them, or near one of the ends. */
+static const float most_step = 6.5f / 255, near_end = 0.1f, about = 4.5f / 255;
+static const double few = 0.05, least_beyond = 0.02, frequent = 3;
+/* Brightness to either side of which a soft mask reaches. */
+static const float soft_dark = 0.25f, soft_bright = 0.75f;
+
 /* Floats above this have a unit of their own. */
 static const float beyond_white = 1.5f;
 
@@ -35,6 +42,8 @@ typedef struct value {
     float sample[MOST_CHANNELS];
     float brightness;
     size_t count, inside; /* pixels, and those of them with no other value around them */
+    size_t darker, brighter,
+        other; /* pixels around it that are so by a step at most, and all others of another value */
 } value;
 
 typedef struct tally {
@@ -86,12 +95,24 @@ static value *find_value(tally *t, const float *sample, int channels)
     return v;
 }
 
-static bool is_inside(const img *m, int x, int y)
+/* Counts a pixel by those around it. */
+static void count_pixel(const img *m, int x, int y, value *v)
 {
-    const float *p = img_at(m, x, y);
-    int n = m->channels;
-    return (x == 0 || is_same(p, p - n, n)) && (x + 1 == m->width || is_same(p, p + n, n)) &&
-           (y == 0 || is_same(p, img_at(m, x, y - 1), n)) && (y + 1 == m->height || is_same(p, img_at(m, x, y + 1), n));
+    static const int way[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
+    bool inside = true;
+    for (int i = 0; i < 4; i++) {
+        const int u = x + way[i][0], w = y + way[i][1];
+        if (u < 0 || u >= m->width || w < 0 || w >= m->height) continue;
+        const float *around = img_at(m, u, w);
+        if (is_same(v->sample, around, m->channels)) continue;
+        const float step = brightness_of(around, m->channels) - v->brightness;
+        inside = false;
+        v->darker += step < 0 && step >= -most_step;
+        v->brighter += step > 0 && step <= most_step;
+        v->other += step == 0 || fabsf(step) > most_step;
+    }
+    v->count++;
+    v->inside += inside;
 }
 
 static void count_values(const img *m, tally *t)
@@ -102,8 +123,7 @@ static void count_values(const img *m, tally *t)
             const float *sample = img_at(m, x, y);
             if (!last || !is_same(last->sample, sample, m->channels)) last = find_value(t, sample, m->channels);
             if (!last) return;
-            last->count++;
-            last->inside += is_inside(m, x, y);
+            count_pixel(m, x, y, last);
         }
 }
 
@@ -121,12 +141,45 @@ static bool is_area(const value *v, size_t pixels)
            (double)v->inside >= least_inside * (double)v->count;
 }
 
+static bool is_soft(const tally *t)
+{
+    bool dark = false, bright = false;
+    for (size_t i = 0; i < t->count; i++) {
+        dark |= t->at[i].brightness < soft_dark;
+        bright |= t->at[i].brightness >= soft_bright;
+    }
+    return dark && bright;
+}
+
+/* Tells whether a value has far more pixels than those about it: an area amid soft edges. */
+static bool stands_out(const tally *t, const value *v)
+{
+    double sum = 0;
+    for (size_t i = 0; i < t->count; i++)
+        if (fabsf(t->at[i].brightness - v->brightness) <= about) sum += (double)t->at[i].count;
+    const double others = (sum - (double)v->count) / (2 * (int)(255 * about));
+    return (double)v->count > frequent * others;
+}
+
+/* Tells whether a value is a step of a wide soft edge. */
+static bool is_step(const tally *t, const value *v)
+{
+    const double all = (double)(v->darker + v->brighter + v->other);
+    const bool at_end = v->brightness < near_end || v->brightness > 1 - near_end;
+    return (double)v->other <= few * all && (double)v->darker >= least_beyond * all &&
+           (double)v->brighter >= least_beyond * all && (at_end || !stands_out(t, v));
+}
+
 /* Keeps only the values of areas, the darkest first; in lossy files those that differ little are merged. */
 static void keep_areas(tally *t, size_t pixels, bool lossy)
 {
+    const bool soft = is_soft(t);
+    bool is_kept[MOST_VALUES];
     size_t kept = 0, joined = 0;
     for (size_t i = 0; i < t->count; i++)
-        if (is_area(&t->at[i], pixels)) t->at[kept++] = t->at[i];
+        is_kept[i] = is_area(&t->at[i], pixels) && !(soft && is_step(t, &t->at[i]));
+    for (size_t i = 0; i < t->count; i++)
+        if (is_kept[i]) t->at[kept++] = t->at[i];
     qsort(t->at, kept, sizeof *t->at, by_brightness);
     float before = -1;
     for (size_t i = 0; i < kept; i++) {
