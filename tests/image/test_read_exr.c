@@ -53,6 +53,35 @@ static void exr_pictures_are_found_by_their_channels(void **state)
     img_free(&picture);
 }
 
+/* Maps and renderings have layers of colour, the first of which by name is hardly ever what the picture shows. */
+static void an_exr_is_the_layer_that_it_shows(void **state)
+{
+    (void)state;
+    static const char *const layers[][2] = {{"albedo", "photo"},
+                                            {"ViewLayer.AO", "ViewLayer.Combined"},
+                                            {"diffuse", "RGBA"},
+                                            {"C.albedo", "a.Beauty"},
+                                            {"diffuse", "specular"}};
+    for (size_t k = 0; k < sizeof layers / sizeof *layers; k++) {
+        const bool by_name = k < 4;
+        float values[7] = {0.125f, 0.25f, 0.375f, 0.5f, 0.75f, 1, 0.5f};
+        char name[6][64];
+        exr_channel channels[7];
+        img color, alpha;
+        for (size_t i = 0; i < 6; i++) {
+            snprintf(name[i], sizeof name[i], "%s.%c", layers[k][i / 3], "RGB"[i % 3]);
+            channels[i] = (exr_channel){name[i], values + i, 1, false};
+        }
+        channels[6] = (exr_channel){"mask.A", values + 6, 1, false};
+        assert_int_equal(exr_write(scratch_path("layers.exr"), 1, 1, channels, 7, NULL, 0), OK);
+        assert_int_equal(img_read(scratch_path("layers.exr"), &color, &alpha), OK);
+        for (int c = 0; c < 3; c++) /* maps' photograph is multiplied by the mask */
+            assert_true(color.data[c] == values[by_name ? 3 + c : c] * (k == 0 ? 2 : 1));
+        img_free(&color);
+        img_free(&alpha);
+    }
+}
+
 /* Writes one line of floats, uncompressed. */
 static void write_part(exr_context_t file, int part, int first_line, int channels, const float *line, int width)
 {
@@ -238,6 +267,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exr_pictures_are_found_by_their_channels),
+        cmocka_unit_test(an_exr_is_the_layer_that_it_shows),
         cmocka_unit_test(an_exr_is_its_first_part_that_is_a_picture),
         cmocka_unit_test(the_chromaticities_of_an_exr_are_honoured),
         cmocka_unit_test(an_exr_is_what_its_display_window_shows),

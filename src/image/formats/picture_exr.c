@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 #include "image/exr/exr_place.h"
 #include "image/formats/picture.h"
@@ -10,18 +11,39 @@ enum { NAME_SIZE = 256 };
 
 typedef char channel_name[NAME_SIZE];
 
-/* Finds the first layer that has .R, .G and .B. */
+/* The layer of maps that is the photograph, multiplied by their mask. */
+static const char photo_layer[] = "photo.";
+
+/* Tells how likely a layer, "Scene.Combined.", is what its file shows, by its last name; 0: it is one of others. */
+static int rank_of(const char *layer)
+{
+    static const char *const shown[] = {photo_layer, "combined.", "beauty.", "composite.", "rgba.", "rgb."};
+    enum { SHOWN = sizeof shown / sizeof *shown };
+    for (int i = 0; i < SHOWN; i++) {
+        const size_t all = strlen(layer), own = strlen(shown[i]);
+        if (all < own || strcasecmp(layer + all - own, shown[i]) != 0) continue;
+        if (all == own || layer[all - own - 1] == '.') return SHOWN - i;
+    }
+    return 0;
+}
+
+/* Finds the layer with .R, .G and .B that is most likely what the file shows, the first one among equals. */
 static int find_layer(const exr_file *f, channel_name names[3])
 {
     const char *name;
+    int best = -1;
     for (int i = 0; (name = exr_channel_name(f, i)); i++) {
+        channel_name layer, own[3];
         size_t n = strlen(name);
         if (n < 3 || n >= NAME_SIZE || strcmp(name + n - 2, ".R") != 0) continue;
+        snprintf(layer, NAME_SIZE, "%.*s", (int)n - 1, name);
         for (int c = 0; c < 3; c++)
-            snprintf(names[c], NAME_SIZE, "%.*s%c", (int)n - 1, name, "RGB"[c]);
-        if (exr_has_channel(f, names[1]) && exr_has_channel(f, names[2])) return 3;
+            snprintf(own[c], NAME_SIZE, "%.*s%c", (int)n - 1, name, "RGB"[c]);
+        if (!exr_has_channel(f, own[1]) || !exr_has_channel(f, own[2]) || rank_of(layer) <= best) continue;
+        best = rank_of(layer);
+        memcpy(names, own, sizeof own);
     }
-    return 0;
+    return best < 0 ? 0 : 3;
 }
 
 /* Chooses the channels of the picture and returns how many there are; 0 if there is none. */
@@ -44,7 +66,7 @@ static int choose_channels(const exr_file *f, channel_name names[3])
     return 0;
 }
 
-/* Mask of maps and samples, whose colour is not multiplied by it. */
+/* Mask of maps and samples, whose colour is not multiplied by it, except for the photograph. */
 static const char maps_mask[] = "mask.A";
 
 /* Finds the alpha channel, unless it is the colour itself; returns false if there is none. A layer's own comes first.
@@ -138,7 +160,7 @@ static status open_picture(const char *path, exr_file **out, channel_name names[
 
 static status read_channels(exr_file *f, channel_name names[3], int channels, img *color, img *alpha)
 {
-    channel_name opacity;
+    channel_name opacity = "";
     status s = img_new(color, exr_width(f), exr_height(f), channels);
     if (s == OK && alpha && find_alpha(f, names[0], opacity)) s = img_new(alpha, exr_width(f), exr_height(f), 1);
     if (s != OK) return s;
@@ -147,7 +169,8 @@ static status read_channels(exr_file *f, channel_name names[3], int channels, im
         targets[c] = (exr_target){names[c], color->data + c, channels};
     if (alpha && alpha->data) targets[channels++] = (exr_target){opacity, alpha->data, 1};
     s = exr_read(f, targets, (size_t)channels);
-    if (s == OK && alpha && alpha->data && strcmp(opacity, maps_mask) != 0) divide_by_alpha(alpha, color);
+    const bool multiplied = strcmp(opacity, maps_mask) != 0 || strncmp(names[0], photo_layer, strlen(photo_layer)) == 0;
+    if (s == OK && alpha && alpha->data && multiplied) divide_by_alpha(alpha, color);
     return s;
 }
 
