@@ -68,7 +68,8 @@ static const char help[] =
     "ones\n"
     "      --smooth N       frames of the moving average, 1 to 100 (default 8); 0: each frame by itself\n"
     "      --share K/N      of several photographs the K-th of N equal shares alone, for as many machines\n"
-    "  -r, --resume         of several, those alone whose maps are not there yet, or older than photograph or mask\n"
+    "  -r, --resume         of several, those alone that lack maps or files asked for, or have older ones than\n"
+    "                       photograph and mask, or another photograph's\n"
     "      --json           a report as JSON on standard output, one line a photograph\n"
     "  -t, --threads N      how many threads work (default: one a processor)\n"
     "  -q, --quiet          no other output than errors\n"
@@ -220,7 +221,7 @@ static status process_photo(const request *r, const photo_job *job, photo_taken 
     merlin_maps maps = {0};
     staged_files written = {0};
     const char *const inputs[STAGING_MOST_INPUTS] = {job->photo, job->mask};
-    const estimate_write more = {r, job->photo, job->output, inputs};
+    const estimate_write more = {r, job->photo, job->output, inputs, standard_input_is(job->photo) ? NULL : job};
     merlin_params params = r->params;
     params.progress = r->watch->tell;
     params.progress_context = r->watch->context;
@@ -309,11 +310,21 @@ static int estimate_all(request *r, const photo_list *photos)
     return code;
 }
 
+/* Removes photographs that have all that is asked for. */
+static size_t drop_done(const request *r, photo_list *photos)
+{
+    const char *inside[] = {"report.json", NULL, NULL, NULL};
+    size_t count = 1;
+    if (r->mesh) inside[count++] = "mesh.glb";
+    if (r->html) inside[count++] = PAGE_FILE;
+    return photo_list_drop_done(photos, &(photo_wanted){inside, r->meshes.at, (size_t)r->meshes.count});
+}
+
 /* Removes photographs of other shares, and those that are done. */
 static void skip_photos(const request *r, photo_list *photos)
 {
     if (r->share.of) photo_list_share(photos, &r->share);
-    size_t done = r->resume ? photo_list_drop_done(photos) : 0;
+    size_t done = r->resume ? drop_done(r, photos) : 0;
     if (done && !r->quiet)
         fprintf(messages(), "merlin estimate: %zu of %zu photographs have their maps\n", done, done + photos->count);
 }

@@ -130,7 +130,7 @@ static status do_frame(sequence_work *w, merlin_frame *frame)
         if (s != OK && s != MERLIN_STOPPED) s = fail_in(s, "%s", label);
     }
     if (s == OK) {
-        const estimate_write files = {w->request, label, folder, inputs};
+        const estimate_write files = {w->request, label, folder, inputs, NULL};
         s = estimate_write_files(&files, &maps, false, &w->written);
         merlin_maps_free(&maps);
     }

@@ -4,6 +4,7 @@
 #include "cli/left_files.h"
 #include "cli/page.h"
 #include "command/cli.h"
+#include "command/photo_source.h"
 #include "command/standard_input.h"
 #include "merlin/merlin.h"
 
@@ -27,7 +28,8 @@ static status write_meshes(const estimate_write *w, const merlin_maps *maps, map
 static status write_more(const estimate_write *w, const merlin_maps *maps, maps_staging *to)
 {
     char path[PATH_MAX];
-    status s = write_meshes(w, maps, to);
+    status s = w->job ? photo_source_note(w->job, staging_folder(to->at[0])) : OK;
+    if (s == OK) s = write_meshes(w, maps, to);
     const page_source of = {standard_input_name(w->photo), w->output, 0};
     if (s == OK && w->request->html) s = page_write(maps, &of, staging_path(to->at[0], PAGE_FILE, path));
     return s == OK && cli_interrupted() ? fail(MERLIN_STOPPED, "stopped") : s;

@@ -33,6 +33,7 @@ typedef struct estimate_write {
     const estimate_request *request;
     const char *photo, *output;
     const char *const *inputs;
+    const photo_job *job; /* what the report is to name as its source; NULL: nothing */
 } estimate_write;
 
 /* Writes the maps and the other files that were asked for: all or none. last: no photograph follows. */

@@ -15,6 +15,7 @@
 #include "command/json_line.h"
 #include "command/photo_folder.h"
 #include "command/photo_hint.h"
+#include "command/photo_source.h"
 #include "command/standard_input.h"
 #include "merlin/estimate.h"
 
@@ -240,23 +241,34 @@ void photo_list_share(photo_list *list, const photo_share *share)
     keep_those(list, is_of_share, share);
 }
 
-/* Tells whether a photograph or mask is newer than its maps, as make does. */
-static bool is_to_do(const photo_job *job, size_t i, const void *context)
+/* Tells whether a file is missing, or older than what it was made of, as make does. */
+static bool is_older(const char *path, const photo_job *job)
 {
-    struct stat photo, mask, report;
-    char *path = file_join(job->output, "report.json");
-    bool there = path && stat(path, &report) == 0;
-    free(path);
-    (void)i;
-    (void)context;
-    if (!there || stat(job->photo, &photo) != 0 || photo.st_mtime > report.st_mtime) return true;
-    return job->mask && (stat(job->mask, &mask) != 0 || mask.st_mtime > report.st_mtime);
+    struct stat own, photo, mask;
+    if (!path || stat(path, &own) != 0 || stat(job->photo, &photo) != 0 || photo.st_mtime > own.st_mtime) return true;
+    return job->mask && (stat(job->mask, &mask) != 0 || mask.st_mtime > own.st_mtime);
 }
 
-size_t photo_list_drop_done(photo_list *list)
+/* Tells whether a photograph has no maps, those of another one, older ones, or not all files that are wanted. */
+static bool is_to_do(const photo_job *job, size_t i, const void *context)
+{
+    const photo_wanted *wanted = context;
+    bool old = !photo_source_is_noted(job, job->output);
+    (void)i;
+    for (const char *const *name = wanted->inside; *name && !old; name++) {
+        char *path = file_join(job->output, *name);
+        old = is_older(path, job);
+        free(path);
+    }
+    for (size_t k = 0; k < wanted->count && !old; k++)
+        old = is_older(wanted->elsewhere[k], job);
+    return old;
+}
+
+size_t photo_list_drop_done(photo_list *list, const photo_wanted *wanted)
 {
     size_t before = list->count;
-    keep_those(list, is_to_do, NULL);
+    keep_those(list, is_to_do, wanted);
     return before - list->count;
 }
 

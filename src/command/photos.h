@@ -23,8 +23,14 @@ typedef struct photo_share {
 } photo_share;
 /* Keeps only every N-th photograph. The places of results do not depend on it. */
 void photo_list_share(photo_list *list, const photo_share *share);
-/* Removes photographs whose maps exist and are not older than photograph and mask; returns their number. */
-size_t photo_list_drop_done(photo_list *list);
+/* Files that a photograph is to have: names inside its folder, ended by NULL, and paths elsewhere. */
+typedef struct photo_wanted {
+    const char *const *inside, *const *elsewhere;
+    size_t count; /* of those elsewhere */
+} photo_wanted;
+/* Removes photographs that have all of these files, none of them older than photograph and mask, and made of these
+ * (photo_source.h); returns their number. */
+size_t photo_list_drop_done(photo_list *list, const photo_wanted *wanted);
 /* Prints one line for each folder with skipped files. */
 void photo_list_tell(const photo_list *list, const char *command);
 /* Adds the skipped files of all folders to a photograph's report, if there are any. */

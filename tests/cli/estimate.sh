@@ -346,6 +346,25 @@ grep -q "^shares/b.hdr" out && [ "$(wc -l <out)" -eq 1 ] || complain "not the ch
 for wrong in 0/2 3/2 1 1/0 a/b -1/2 1/2x; do refuses 2 "wants K/N" estimate shares --share="$wrong"; done
 rm -r shares shared
 
+echo "a batch that goes on takes no other photograph's maps, and lacks no file that is asked for"
+mkdir shares
+cp disc.hdr shares/a.hdr
+estimate shares --size 64 -o shared -q || complain "a photograph fails"
+mv shares/a.hdr shares/b.hdr
+cp disc.merlin/reconstruction.png shares/a.png
+touch -d "-1 hour" shares/*
+estimate shares --size 64 -o shared -r >out 2>err || complain "a batch of other names fails: $(cat err)"
+grep -q '^shares/a.png: shared/a/' out && grep -q '^shares/b.hdr: shared/b/' out ||
+    complain "a.png has the maps of what was a.hdr: $(cat out err)"
+estimate shares --size 64 -o shared -r >out 2>err && [ ! -s out ] || complain "what is done is done again: $(cat out err)"
+estimate shares --size 64 -o shared -r --mesh --html >out 2>err || complain "more files fail: $(cat err)"
+[ -s shared/a/mesh.glb ] && [ -s shared/b/viewer.html ] || complain "files that were asked for are missing: $(cat err)"
+cp shared/b/mask.png shares/b.mask.png
+touch -d "-1 hour" shares/b.mask.png
+estimate shares --size 64 -o shared -r >out 2>err || complain "a new mask fails: $(cat err)"
+grep -q "^shares/b.hdr" out && [ "$(wc -l <out)" -eq 1 ] || complain "a mask that is new, but older, is ignored: $(cat out)"
+rm -r shares shared
+
 echo "an interrupted batch stops and leaves nothing half written"
 mkdir many
 for i in {100..199}; do ln disc.hdr "many/$i.hdr"; done

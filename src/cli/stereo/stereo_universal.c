@@ -80,7 +80,7 @@ static status write(const universal_request *r, merlin_model *model, const merli
     const stereo_files *f = r->files;
     const estimate_request as = {
         .mesh = f->mesh.count == 0, .html = f->page, .meshes = f->mesh, .model = model, .watch = r->watch};
-    return estimate_write_files(&(estimate_write){&as, r->input, f->folder, f->inputs}, maps, true, written);
+    return estimate_write_files(&(estimate_write){&as, r->input, f->folder, f->inputs, NULL}, maps, true, written);
 }
 
 status stereo_universal(const universal_request *r, const merlin_capture *capture)
