@@ -86,6 +86,32 @@ static void an_ambient_picture_is_darker_than_what_lamps_add_to(void **state)
     assert_refused(&PLAIN, "ambient.png is brighter than all pictures");
 }
 
+/* Programs save what is black, or has no colours, in grey: as an ambient picture, the first one or any other. */
+static void grey_pictures_among_colour_ones_have_equal_channels(void **state)
+{
+    (void)state;
+    merlin_capture c;
+    write_text("lights.txt", "0 0 1\n0.5 0 0.8\n0 0.5 0.8\n");
+    for (int grey = 0; grey < 3; grey++) {
+        const char *const names[] = {"a.png", "b.png", "c.png"};
+        for (int i = 0; i < 3; i++)
+            write_flat(names[i], 6, 4, i == grey ? 1 : 3, 0.2f + 0.1f * (float)i, IMG_LINEAR16);
+        write_flat("ambient.png", 6, 4, grey == 1 ? 3 : 1, 0.05f, IMG_LINEAR16);
+        assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+        assert_int_equal(c.channels, 3);
+        for (int i = 0; i < 3; i++)
+            for (int k = 0; k < 6 * 4 * 3; k++)
+                assert_true(abs(c.picture[i][k] - (int)(65535 * (0.15f + 0.1f * (float)i))) <= 2);
+        assert_non_null(warnings_find(&c.noticed, "grey_among_colour"));
+        pst_capture_free(&c);
+        write_flat(names[grey], 6, 4, 1, 0, IMG_LINEAR16);
+        unlink(scratch_path("ambient.png"));
+        assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+        assert_null(warnings_find(&c.noticed, "grey_among_colour")); /* black is of no colour */
+        pst_capture_free(&c);
+    }
+}
+
 static void three_float_pictures(const float value[3])
 {
     for (int i = 0; i < 3; i++) {
@@ -381,6 +407,7 @@ int main(void)
         in_scratch(eight_bit_pictures_are_decoded_unless_they_are_linear),
         in_scratch(ambient_light_is_subtracted_and_clipping_stays),
         in_scratch(an_ambient_picture_is_darker_than_what_lamps_add_to),
+        in_scratch(grey_pictures_among_colour_ones_have_equal_channels),
         in_scratch(floats_share_one_scale_below_saturation),
         in_scratch(floats_and_whole_numbers_are_not_mixed),
         in_scratch(an_lp_file_says_which_picture_has_which_light),

@@ -253,8 +253,6 @@ static void what_does_not_fit_is_refused_in_one_line(void **state)
     three_pictures(IMG_LINEAR16);
     write_flat("b.png", 6, 5, 3, 0.5f, IMG_LINEAR16);
     assert_refused(&PLAIN, "b.png is 6 x 5");
-    write_flat("b.png", 6, 4, 1, 0.5f, IMG_LINEAR16);
-    assert_refused(&PLAIN, "b.png is grey");
     write_text("b.png", "no picture");
     assert_refused(&PLAIN, "b.png");
     assert_refused(&(merlin_capture_files){.lights = "/nowhere/lights.txt"}, "/nowhere/lights.txt");

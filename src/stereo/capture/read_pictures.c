@@ -23,6 +23,9 @@ typedef struct ambient_sums {
     size_t lit, below, other;
 } ambient_sums;
 
+/* Whether a picture has colours; a black one has none, as programs save it in grey. */
+typedef enum picture_tone { TONE_BLACK, TONE_GREY, TONE_COLOUR } picture_tone;
+
 typedef struct reading {
     const char *folder;
     bool decode;
@@ -33,6 +36,7 @@ typedef struct reading {
     ambient_sums *beside; /* counts for every picture; NULL without an ambient one */
     img *first;           /* first picture, until it is stored */
     int bits;             /* its bits */
+    picture_tone *tone;   /* of every picture */
     float *brightest;     /* brightest float of every picture */
     float *exposure;      /* of every picture (exif.h); NULL unless all are known */
     float ambient_exposure;
@@ -92,10 +96,49 @@ static status check_shape(const reading *r, const merlin_capture *c, const char 
     if (picture->width != c->width || picture->height != c->height)
         return fail(MERLIN_BAD_INPUT, "%s is %d x %d pixels, but %s is %d x %d; all pictures must have one size",
                     told(r, name, path), picture->width, picture->height, c->name[0], c->width, c->height);
-    if (picture->channels != c->channels)
-        return fail(MERLIN_BAD_INPUT, "%s is %s, but %s is %s; all pictures must be of one kind", told(r, name, path),
-                    picture->channels == 1 ? "grey" : "in colour", c->name[0], c->channels == 1 ? "grey" : "in colour");
     return OK;
+}
+
+/* ---- grey pictures among colour ones ---- */
+
+/* Gives a grey picture three equal channels where the capture has colours. */
+static status colour_as(const merlin_capture *c, img *picture)
+{
+    img coloured;
+    if (picture->channels == c->channels || !picture->data) return OK;
+    status s = img_new(&coloured, picture->width, picture->height, 3);
+    if (s != OK) return s;
+    for (size_t i = 0, n = img_value_count(&coloured); i < n; i++)
+        coloured.data[i] = picture->data[i / 3];
+    img_free(picture);
+    *picture = coloured;
+    return OK;
+}
+
+static picture_tone tone_of(const reading *r, const img *picture)
+{
+    float most = 0;
+    for (size_t i = 0, n = img_value_count(picture); i < n; i++)
+        most = fmaxf(most, picture->data[i]);
+    return picture->channels > 1 ? TONE_COLOUR : most * r->scale < PST_BLACK ? TONE_BLACK : TONE_GREY;
+}
+
+static int count_tone(const reading *r, picture_tone tone)
+{
+    int count = 0;
+    for (int i = 0; i < r->into->count; i++)
+        count += r->tone[i] == tone;
+    return count;
+}
+
+static void note_grey(const reading *r, merlin_capture *c)
+{
+    const int grey = count_tone(r, TONE_GREY);
+    if (c->channels > 1 && grey > 0)
+        warnings_add(&c->noticed, "grey_among_colour",
+                     "of %d pictures %d %s grey, the others in colour: the albedo's colours may be wrong; give all of "
+                     "one kind",
+                     c->count, grey, grey == 1 ? "is" : "are");
 }
 
 /* Returns the factor of the ambient picture in picture i, which may have been exposed otherwise. */
@@ -212,17 +255,17 @@ static status read_ambient(reading *r, const char *asked, const merlin_capture *
     int bits;
     if (path) {
         s = img_read_samples(path, r->decode, &r->ambient, &bits);
-        if (s == OK &&
-            (r->ambient.width != c->width || r->ambient.height != c->height || r->ambient.channels != c->channels))
-            s = fail(MERLIN_BAD_INPUT,
-                     "the ambient picture %s is %d x %d with %d channels, but the pictures are %d x %d with %d", path,
-                     r->ambient.width, r->ambient.height, r->ambient.channels, c->width, c->height, c->channels);
+        if (s == OK && (r->ambient.width != c->width || r->ambient.height != c->height))
+            s = fail(MERLIN_BAD_INPUT, "the ambient picture %s is %d x %d pixels, but the pictures are %d x %d", path,
+                     r->ambient.width, r->ambient.height, c->width, c->height);
         if (s == OK && (bits == 32) != (r->bits == 32))
             s = fail(MERLIN_BAD_INPUT,
                      "the ambient picture %s has %s, but the pictures have %s; give one of their kind", path,
                      kind_of(bits), kind_of(r->bits));
         for (size_t i = 0; s == OK && i < img_value_count(&r->ambient); i++)
             r->ambient.data[i] *= r->scale;
+        if (r->ambient.channels > c->channels) r->into->channels = r->ambient.channels;
+        if (s == OK) s = colour_as(c, &r->ambient);
     }
     r->ambient_path = path;
     if (s != OK || !path) return s;
@@ -328,13 +371,14 @@ static void even_out(const reading *r, merlin_capture *c)
 /* Reads a picture; the first one was read already to determine its format. */
 static status get_picture(const reading *r, int i, img *out, int *bits)
 {
-    if (i > 0) return read_one(r, r->into->name[i], out, bits);
+    if (i > 0 || !r->first->data) return read_one(r, r->into->name[i], out, bits);
     *out = *r->first;
     *bits = r->bits;
     *r->first = (img){0};
     return OK;
 }
 
+/* Takes a picture, unless it has colours and the first ones have none: all are then taken again. */
 static status take_picture(const reading *r, int i)
 {
     img picture;
@@ -342,9 +386,31 @@ static status take_picture(const reading *r, int i)
     status s = get_picture(r, i, &picture, &bits);
     if (s != OK) return s;
     s = check_shape(r, r->into, r->into->name[i], &picture, bits);
-    if (s == OK && r->ambient.data) compare_with_ambient(r, i, &picture);
-    if (s == OK) s = store(r, i, &picture, &r->into->picture[i]);
+    r->tone[i] = tone_of(r, &picture);
+    const bool fits = picture.channels <= r->into->channels;
+    if (s == OK && fits) s = colour_as(r->into, &picture);
+    if (s == OK && fits && r->ambient.data) compare_with_ambient(r, i, &picture);
+    if (s == OK && fits) s = store(r, i, &picture, &r->into->picture[i]);
     img_free(&picture);
+    return s;
+}
+
+static status take_pictures(reading *r, merlin_capture *c)
+{
+    r->tone = calloc((size_t)c->count, sizeof *r->tone);
+    if (!r->tone) return fail(MERLIN_NO_MEMORY, "no memory for %d pictures", c->count);
+    status s = for_pictures(r, take_picture);
+    if (s == OK && c->channels == 1 && count_tone(r, TONE_COLOUR) > 0) {
+        for (int i = 0; i < c->count; i++) {
+            free(c->picture[i]);
+            c->picture[i] = NULL;
+        }
+        c->channels = 3;
+        s = colour_as(c, &r->ambient);
+        if (s == OK) s = for_pictures(r, take_picture);
+    }
+    if (s == OK) note_grey(r, c);
+    free(r->tone);
     return s;
 }
 
@@ -358,7 +424,7 @@ status pst_read_pictures(const char *folder, const merlin_capture_files *options
     c->linear = options->linear != 0;
     if (s == OK) s = read_ambient(&r, options->ambient, c);
     if (s == OK) s = read_exposures(&r, c);
-    if (s == OK) s = for_pictures(&r, take_picture);
+    if (s == OK) s = take_pictures(&r, c);
     if (s == OK && r.ambient.data) s = check_ambient(&r, c);
     if (s == OK) even_out(&r, c);
     free(r.exposure);
