@@ -58,7 +58,9 @@ static void a_folder_without_photographs_is_refused_unless_it_holds_maps(void **
     merlin_photos photos;
     assert_int_equal(merlin_photos_list(scratch, NULL, &photos), MERLIN_BAD_INPUT);
     assert_null(photos.at);
-    photograph("albedo.png");
+    static const char *const maps[] = {"albedo.png", "confidence.png", "error.png", "mesh.png", "reconstruction.png"};
+    for (size_t i = 0; i < sizeof maps / sizeof *maps; i++)
+        photograph(maps[i]);
     assert_int_equal(file_write(scratch_path("maps.exr"), "maps", 4), OK);
     assert_int_equal(merlin_photos_list(scratch, NULL, &photos), MERLIN_OK);
     assert_int_equal(photos.count, 0);

@@ -32,9 +32,9 @@ static bool is_mesh_name(const char *name)
 /* Tells whether estimate and stereo write a file of this name with maps.exr. */
 static bool is_result_name(const char *name)
 {
-    static const char *const results[] = {"albedo.png",    "depth.png",  "error.png",    "maps.exr",
-                                          "mask.png",      "normal.png", "overview.png", "reconstruction.png",
-                                          "roughness.png", "report.json"};
+    static const char *const results[] = {"albedo.png",         "confidence.png", "depth.png",  "error.png",
+                                          "maps.exr",           "mask.png",       "normal.png", "overview.png",
+                                          "reconstruction.png", "roughness.png",  "report.json"};
     for (size_t i = 0; i < sizeof results / sizeof results[0]; i++)
         if (strcmp(name, results[i]) == 0) return true;
     return is_mesh_name(name);
