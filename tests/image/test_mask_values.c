@@ -140,6 +140,31 @@ static void soft_edges_keep_their_coverage(void **state)
     for (int i = 0; i < PIXELS; i++)
         codes[i] = (uint8_t)(codes[i] / 17); /* 0 to 15 */
     assert_selects_object(save_grey(codes, "dim.png"), false);
+    fill(40, 255, codes); /* a dark grey is not a sixth of an object */
+    codes[TOP * SIDE + LEFT] = 150;
+    assert_selects_object(save_grey(codes, "grey.png"), false);
+    assert_int_equal(img_read_mask(scratch_path("grey.png"), &mask), OK);
+    assert_true(mask.data[0] == 0 && mask.data[TOP * SIDE + LEFT] > 0.5f && mask.data[TOP * SIDE + LEFT] < 0.52f);
+    img_free(&mask);
+}
+
+/* Black ink is not quite black. */
+static void masks_in_ink_are_what_they_show(void **state)
+{
+    (void)state;
+    uint8_t codes[PIXELS][4];
+    for (int i = 0; i < PIXELS; i++)
+        memcpy(codes[i], (const uint8_t[]){0, 0, 0, is_object(i) ? 0 : 255}, 4);
+    VipsImage *image = vips_image_new_from_memory_copy(codes, sizeof codes, SIDE, SIDE, 4, VIPS_FORMAT_UCHAR), *ink;
+    assert_non_null(image);
+    assert_int_equal(vips_copy(image, &ink, "interpretation", VIPS_INTERPRETATION_CMYK, NULL), 0);
+    static const char *const names[] = {"ink.tif", "ink.jpg"};
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(vips_image_write_to_file(ink, scratch_path(names[i]), NULL), 0);
+        assert_selects_object(scratch_path(names[i]), i == 0);
+    }
+    g_object_unref(ink);
+    g_object_unref(image);
 }
 
 static void noise_of_jpeg_about_two_values_is_no_more_values(void **state)
@@ -311,6 +336,7 @@ int main(void)
         cmocka_unit_test(noise_of_jpeg_about_two_values_is_no_more_values),
         cmocka_unit_test(more_areas_than_two_are_refused_by_their_values),
         cmocka_unit_test(soft_edges_of_any_width_are_no_areas),
+        cmocka_unit_test(masks_in_ink_are_what_they_show),
         cmocka_unit_test(values_that_are_neither_two_nor_half_white_are_refused),
         cmocka_unit_test(photographs_are_refused),
         cmocka_unit_test(floats_beyond_white_have_a_unit_of_their_own),

@@ -185,15 +185,16 @@ static void what_is_not_finite_is_refused(void **state)
     assert_refused(save(bare, "inf.tif"), "not finite");
 }
 
-/* CMYK has ink where others have light: read directly, such a mask would select the background. */
-static void masks_in_ink_are_refused(void **state)
+/* CMYK has ink where others have light, of which photometric stereo would make anything. */
+static void measurements_in_ink_are_refused(void **state)
 {
     (void)state;
     const char *path = save_quarters_in(VIPS_INTERPRETATION_CMYK, "ink.tif");
-    img mask, color;
-    assert_int_equal(img_read_mask(path, &mask), MERLIN_BAD_INPUT);
+    img samples, color;
+    int bits;
+    assert_int_equal(img_read_samples(path, false, &samples, &bits), MERLIN_BAD_INPUT);
     assert_non_null(strstr(status_message(), "ink.tif: its samples are cmyk"));
-    assert_null(mask.data);
+    assert_null(samples.data);
     assert_int_equal(img_read(path, &color, NULL), OK);
     img_free(&color);
 }
@@ -208,7 +209,7 @@ int main(void)
         cmocka_unit_test(every_thread_has_the_message_of_its_own_picture),
         cmocka_unit_test(huge_pictures_are_refused_by_their_header),
         cmocka_unit_test(what_is_not_finite_is_refused),
-        cmocka_unit_test(masks_in_ink_are_refused),
+        cmocka_unit_test(measurements_in_ink_are_refused),
     };
     return cmocka_run_group_tests(tests, start, scratch_close);
 }

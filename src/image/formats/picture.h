@@ -15,7 +15,8 @@
 /* How colour samples become linear light; alpha is always linear. */
 typedef enum picture_colour {
     PICTURE_LINEARIZE, /* integers are decoded from sRGB (or by their profile or gamma), floats are linear */
-    PICTURE_AS_IT_IS,  /* integers are scaled to [0, 1] and not decoded */
+    PICTURE_AS_IT_IS,  /* integers are scaled to [0, 1] and not decoded; only grey and RGB are light */
+    PICTURE_AS_SHOWN,  /* the same, but other spaces, such as CMYK, are converted to sRGB's codes */
 } picture_colour;
 
 /* What is known from a file's header alone. */

@@ -132,7 +132,7 @@ status picture_read_raw(const char *path, picture_colour how, img *color)
     if (s == OK && damaged) s = refusal(path, LIBRAW_DATA_ERROR);
     if (s == OK && (made->colors < 1 || made->colors > 4)) s = refusal(path, LIBRAW_FILE_UNSUPPORTED);
     if (s == OK) s = img_new(color, made->width, made->height, made->colors < 3 ? 1 : 3);
-    if (s == OK) take(made, (const float(*)[4])file->color.rgb_cam, how == PICTURE_AS_IT_IS, color);
+    if (s == OK) take(made, (const float(*)[4])file->color.rgb_cam, how != PICTURE_LINEARIZE, color);
     if (made) raw.dcraw_clear_mem(made);
     raw.close(file);
     return s;

@@ -142,7 +142,8 @@ static status check_meaning(const tiff_head *t, uint64_t page, const char *path)
     if (meaning == ICC_LAB || meaning == ITU_LAB)
         return fail(MERLIN_BAD_INPUT, "cannot read %s: its colours are %s L*a*b*; save it as RGB", path,
                     meaning == ICC_LAB ? "ICC" : "ITU");
-    bool whole = bits <= 2 || bits == 4 || bits == 8 || bits == 16;
+    const bool grey = tiff_value(t, page, TIFF_SAMPLES) <= 1; /* or a palette */
+    bool whole = (grey && (bits <= 2 || bits == 4)) || bits == 8 || bits == 16;
     bool logarithmic = meaning == LOG_L || meaning == LOG_LUV; /* their decoder returns floats */
     if (logarithmic || (format == FLOATS ? bits == 32 : format != SIGNED && whole)) return OK;
     return fail(MERLIN_BAD_INPUT,

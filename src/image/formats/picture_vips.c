@@ -172,6 +172,13 @@ static bool convert_space(VipsImage **image, const request *r)
     return replace(image, &made, vips()->colourspace(*image, &made, VIPS_INTERPRETATION_sRGB, NULL));
 }
 
+/* Tells whether a picture is converted to sRGB. What is only shown keeps its codes where they are grey or RGB. */
+static bool is_converted(VipsImage *image, const request *r)
+{
+    if (r->how == PICTURE_AS_SHOWN) return !is_plain(vips()->image_get_interpretation(image));
+    return r->how == PICTURE_LINEARIZE;
+}
+
 /* Passes on the rows that libvips has ready: whole rows, from the top. */
 static int put_rows(VipsRegion *from, VipsRect *area, void *context)
 {
@@ -226,16 +233,17 @@ static status find_orientation(const char *path, int *orientation)
 /* Decodes an open picture. light: of the stored codes, from which other spaces and profiles are converted to sRGB. */
 static status decode_open(VipsImage **image, const request *r, picture_light light)
 {
-    bool decode = r->how == PICTURE_LINEARIZE;
-    picture_layout layout;
+    const bool decode = r->how == PICTURE_LINEARIZE;
     const bool floats = !vips()->band_format_isint(vips()->image_get_format(*image));
+    picture_layout layout;
     if (has_profile(*image, r) || !is_plain(vips()->image_get_interpretation(*image)))
         light = (picture_light){.said = false};
     if (decode && floats && vips()->image_get_typeof(*image, VIPS_META_ICC_NAME)) {
         status known = profile_light(*image, r->path, &light);
         if (known != OK) return known;
     }
-    if (!unpack(image) || (decode && !convert_space(image, r))) return vips_refusal(MERLIN_BAD_INPUT, "read", r->path);
+    if (!unpack(image) || (is_converted(*image, r) && !convert_space(image, r)))
+        return vips_refusal(MERLIN_BAD_INPUT, "read", r->path);
     VipsInterpretation space = vips()->image_get_interpretation(*image);
     if (!decode && !is_plain(space))
         return fail(MERLIN_BAD_INPUT, "cannot read %s: its samples are %s, not light; save it in grey or RGB", r->path,

@@ -254,10 +254,10 @@ static status as_it_is(const img *values, img *mask)
     return spread(values, 0, 1, mask);
 }
 
-/* Maps the two values to coverage; one half separates them already if they lie on either side of it. */
+/* Maps the two values to coverage, which they are already if they are black and white, or nearly so. */
 static status between(const img *values, float low, float high, img *mask)
 {
-    bool plain = low < 0.5f && high >= 0.5f;
+    const bool plain = low <= near_end && high >= 1 - near_end;
     return plain ? as_it_is(values, mask) : spread(values, low, high, mask);
 }
 
@@ -313,8 +313,9 @@ static status from_groups(const char *path, const img *values, img *mask)
         bins[bin_of(values, i)]++;
     groups g = divide(bins);
     bool across = g.least < 0.5f && g.most >= 0.5f, even = g.most - g.least < least_contrast;
-    if (even || (g.low < 0.5f && g.high >= 0.5f)) return as_it_is(values, mask);
-    if (g.near >= least_near && g.high - g.low >= least_contrast) return spread(values, g.low, g.high, mask);
+    const bool apart = g.near >= least_near && g.high - g.low >= least_contrast, dark = g.least <= near_end;
+    if (even || (g.low < 0.5f && g.high >= 0.5f && (dark || !apart))) return as_it_is(values, mask);
+    if (apart) return spread(values, g.low, g.high, mask);
     if (across) return as_it_is(values, mask);
     return fail(MERLIN_BAD_INPUT,
                 "the mask %s has no two values that stand out: they run from %.0f to %.0f of 255, all on one side of "

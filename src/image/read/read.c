@@ -224,7 +224,7 @@ status img_read_grey(const char *path, img *grey)
 {
     *grey = (img){0};
     img color = {0};
-    status s = read_any(path, PICTURE_AS_IT_IS, &color, NULL);
+    status s = read_any(path, PICTURE_AS_SHOWN, &color, NULL);
     if (s == OK) s = color_to_grey(&color, grey);
     if (s == OK) clamp_unit(grey);
     img_free(&color);
@@ -242,7 +242,7 @@ status img_read_mask(const char *path, img *mask)
 {
     *mask = (img){0};
     img color = {0}, alpha = {0};
-    status s = read_any(path, PICTURE_AS_IT_IS, &color, &alpha);
+    status s = read_any(path, PICTURE_AS_SHOWN, &color, &alpha);
     if (s == OK && alpha.data && !mask_is_even(&alpha))
         s = mask_from_alpha(&alpha, mask);
     else if (s == OK)
