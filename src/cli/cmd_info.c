@@ -98,9 +98,9 @@ static status print_json(const merlin_weights *info, bool tensors)
         if (value) add_text(o, provenance[i], value);
     }
     if (tensors) add_tensors(o, info);
-    char *text = json_print(o);
+    const status s = json_line_print(o);
     cJSON_Delete(o);
-    return json_report_print(text);
+    return s;
 }
 
 int cmd_info(int argc, char **argv)

@@ -238,6 +238,37 @@ static void before_near_lights_the_lens_of_exif_is_taken(void **state)
     assert_false(pinhole_is_near(&distant.camera));
 }
 
+static void lists_that_differ_are_told(void **state)
+{
+    (void)state;
+    merlin_capture c;
+    three_pictures(IMG_LINEAR16);
+    write_text("lights.txt", "0 0 1\n0.6 0 0.8\n0 -0.6 0.8\n");
+    write_text("dome.lp", "3\na.png 0 0 1\nb.png 0.6 0 0.8\nc.png 0 -0.6 0.8\n");
+    write_text("lights.csv", "c.png,0,-0.6,0.8\nb.png,0.6,0,0.8\na.png,0,0,1\n"); /* without names in the first one */
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    const warning *differ = warnings_find(&c.noticed, "lists_differ");
+    assert_non_null(differ);
+    assert_non_null(strstr(differ->message, "lights.csv lists other ones"));
+    pst_capture_free(&c);
+    unlink(scratch_path("lights.csv"));
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_null(warnings_find(&c.noticed, "lists_differ"));
+    pst_capture_free(&c);
+    write_text("lights.txt", "c.png 0 -0.6 0.8\na.png 0 0 1\nb.png 0.6 0 0.8\n");
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_null(warnings_find(&c.noticed, "lists_differ"));
+    pst_capture_free(&c);
+}
+
+static void places_in_front_of_the_camera_want_near(void **state)
+{
+    (void)state;
+    three_pictures(IMG_LINEAR16);
+    write_text("lights.txt", "-2 0 -0.1\n2 0 -0.2\n0 2 -0.1\n");
+    assert_refused(&PLAIN, "if they are places, measured from the camera, give --near");
+}
+
 static void near_lights_of_an_lp_file_are_where_it_says(void **state)
 {
     (void)state;
@@ -414,6 +445,8 @@ int main(void)
         in_scratch(a_dome_s_lights_go_to_other_pictures_in_their_order),
         in_scratch(near_lights_have_positions_and_a_camera),
         cmocka_unit_test(before_near_lights_the_lens_of_exif_is_taken),
+        in_scratch(lists_that_differ_are_told),
+        in_scratch(places_in_front_of_the_camera_want_near),
         in_scratch(near_lights_of_an_lp_file_are_where_it_says),
         in_scratch(near_lights_of_an_lp_file_before_the_object_are_about_it),
         in_scratch(a_field_of_view_makes_a_camera_without_lights),

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "base/file.h"
 #include "base/lights/light_list.h"
@@ -21,6 +22,57 @@ static status find_lights(const char *folder, const char *asked, char **path)
     free(*path);
     *path = NULL;
     return fail(MERLIN_BAD_INPUT, "%s has %zu .lp files; name the one that holds the lights", folder, found);
+}
+
+/* Returns the index of the light for the same picture as a list's i-th: of its name, where both lists have names. */
+static size_t counterpart(const light_list *list, size_t i, const light_list *other)
+{
+    for (size_t k = 0; k < other->count && list->name && other->name && list->name[i]; k++)
+        if (other->name[k] && strcasecmp(file_name_of(list->name[i]), file_name_of(other->name[k])) == 0) return k;
+    return i;
+}
+
+/* Tells whether two lists have the same directions, up to what rounding to few decimals makes. */
+static bool are_alike(const light_list *a, const light_list *b)
+{
+    static const double most = 1; /* degrees */
+    if (a->count != b->count) return false;
+    for (size_t i = 0; i < a->count; i++)
+        if (!(vec3_angle(a->at[i], b->at[counterpart(a, i, b)]) <= most)) return false;
+    return true;
+}
+
+/* Warns of a file that lists other lights than the one that is used. */
+static status compare_lists(const char *path, const char *other, merlin_capture *c)
+{
+    light_list used = {0}, left = {0};
+    status s = light_list_read(path, &used);
+    if (s == OK) s = light_list_read(other, &left);
+    if (s == OK && !are_alike(&used, &left))
+        warnings_add(
+            &c->noticed, "lists_differ",
+            "the lights are those of %s, but %s lists other ones: remove it, or say by --lights which is meant", path,
+            file_name_of(other));
+    light_list_free(&used);
+    light_list_free(&left);
+    return s == MERLIN_NO_MEMORY ? s : OK; /* what cannot be read lists no lights */
+}
+
+/* Compares the list that was found in a folder with others that are there. */
+static status check_other_lists(const char *folder, const char *path, merlin_capture *c)
+{
+    char **names;
+    size_t count;
+    status s = file_list(folder, NULL, &names, &count);
+    if (s != OK) return s;
+    for (size_t i = 0; i < count && s == OK; i++) {
+        bool usual = file_ends_in(names[i], ".lp");
+        for (size_t k = 0; light_list_names[k]; k++)
+            usual |= strcasecmp(file_name_of(names[i]), light_list_names[k]) == 0;
+        if (usual && strcmp(file_name_of(names[i]), file_name_of(path)) != 0) s = compare_lists(path, names[i], c);
+    }
+    file_list_free(names, count);
+    return s;
 }
 
 /* Tells whether lights listed for --near are directions: as positions they would all be at one distance from the
@@ -92,6 +144,11 @@ static status set_directions(const char *path, const light_list *list, merlin_ca
             return fail(MERLIN_BAD_INPUT, "%s:%d: the direction has no length", path, list->line[i]);
     }
     if (!are_places(list)) return OK;
+    if (!list->about_object && !has_some(list, 1))
+        return fail(MERLIN_BAD_INPUT,
+                    "the lights in %s are behind or beside the object if they are directions (z is nowhere above 0), "
+                    "but not of length 1: if they are places, measured from the camera, give --near",
+                    path);
     c->about_object = list->about_object && has_some(list, 1) && !has_some(list, -1);
     for (size_t i = 0; i < list->count && c->about_object; i++)
         vec3_put(list->at[i], c->light[i].position);
@@ -173,6 +230,7 @@ status pst_read_plain(const char *folder, const merlin_capture_files *options, m
                     "holds them, or give --method universal or uncalibrated, which find them",
                     folder);
     if (s == OK) s = pst_read_light_list(folder, lights, options, c);
+    if (s == OK && !options->lights) s = check_other_lists(folder, lights, c);
     free(lights);
     return s;
 }
