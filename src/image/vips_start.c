@@ -70,5 +70,8 @@ status vips_refusal(status s, const char *verb, const char *path)
     snprintf(words, sizeof words, "%s", vips()->error_buffer());
     vips()->error_clear();
     words[strcspn(words, "\r\n")] = 0;
-    return fail(s, "cannot %s %s: %s", verb, path, words[0] ? words : "the image library does not say why");
+    if (!words[0]) snprintf(words, sizeof words, "the image library does not say why");
+    if (s != MERLIN_BAD_INPUT) return fail(s, "cannot %s %s: %s", verb, path, words);
+    return fail(s, "cannot %s %s: it is damaged, cut short or of a variant that is not read here (%s); save it again",
+                verb, path, words);
 }

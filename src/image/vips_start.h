@@ -12,7 +12,8 @@
 /* Starts libvips; may be called from any thread. MERLIN_DEVICE_FAILED if it is not installed. */
 status vips_begin(void);
 
-/* Fails with "cannot VERB PATH: the library's first message" and status s; clears the library's messages. */
+/* Fails with "cannot VERB PATH: the library's first message" and status s, of which MERLIN_BAD_INPUT adds what may be
+ * wrong with the file; clears the library's messages. */
 status vips_refusal(status s, const char *verb, const char *path);
 
 /* Loads libvips' HEIF module, which it has not where a program leaves modules out (command/program.c), after

@@ -277,7 +277,7 @@ static status read_open(reader *r, const char *path, picture_colour how, img *co
     if (s != OK) return s;
     errno = 0; /* tells lack of memory from damage (leave) */
     if (r->chunks.overfull) return fail(MERLIN_BAD_INPUT, "cannot read %s: it is damaged or cut short", path);
-    if (!read_head(r)) return r->lacked ? lack(path) : fail(MERLIN_BAD_INPUT, "cannot read %s: %s", path, r->words);
+    if (!read_head(r)) return damaged(r, path);
     s = check_budget(r, path);
     if (s == OK) s = find_light(r, path);
     if (s != OK || r->profile || !color) return s;
