@@ -53,7 +53,7 @@ static status check_direction(const char *option, vec3 direction)
 {
     float length = vec3_length(direction);
     if (length > 1e-6f && length < 1e18f) return OK;
-    return fail(MERLIN_WRONG_USE, "%s: the direction has no length", option);
+    return fail(MERLIN_WRONG_USE, "%s: the direction %s", option, length > 1 ? "is too long" : "has no length");
 }
 
 status lamp_take_direction(const char *text, void *into)

@@ -12,7 +12,7 @@
 static const vec3 middle = {0, 0, -1};
 /* Least probability for a lamp to count; largest distance, beyond which its light is parallel; and the share of the
  * flash from which on there is no other light. */
-static const float LEAST_SURE = 0.5f, FARTHEST = 20, FLASH_ALONE = 0.95f;
+static const float LEAST_SURE = 0.5f, FARTHEST = 20, FLASH_ALONE = 0.93f;
 
 void found_light_take(const float code[MODEL_LIGHTS], merlin_found_light *out)
 {

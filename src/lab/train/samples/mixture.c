@@ -53,6 +53,13 @@ static means measure(const train_view *v)
     return m;
 }
 
+/* Returns the least mean by which a light is divided: one that hardly reaches the visible side is not amplified beyond
+ * what all other lights give. */
+static float least_mean(const means *m)
+{
+    return 0.1f * m->flash + 1e-6f;
+}
+
 static vec3 draw_color(rng *r)
 {
     float kelvin = WARMEST * powf(COLDEST / WARMEST, rng_uniform(r));
@@ -81,8 +88,7 @@ static void draw_mixed(const train_view *v, const means *m, rng *r, train_mixtur
 {
     float flash = 0, room = 0, shares[TRAIN_LAMPS] = {0};
     draw_shares(v, r, &flash, &room, shares);
-    /* a lamp that hardly reaches the visible side is not amplified beyond what all other lights give */
-    const float least = 0.1f * m->flash + 1e-6f;
+    const float least = least_mean(m);
     out->flash = scaled(vec3_make(1, 1, 1), flash / fmaxf(m->flash, least));
     out->room = scaled(vec3_make(1, 1, 1), room / fmaxf(m->room, least));
     for (int k = 0; k < v->lamp_count; k++)
@@ -190,7 +196,7 @@ train_capture train_capture_draw(rng *steady, int picture)
 /* Lights a picture by its own lamp, which a hand holds nearer or farther, and by the surroundings of all pictures. */
 static void draw_torch(const train_view *v, const means *m, const train_capture *c, rng *r, train_mixture *out)
 {
-    const float least = 0.1f * m->flash + 1e-6f, strength = expf(rng_range(r, -0.7f, 0));
+    const float least = least_mean(m), strength = expf(rng_range(r, -0.7f, 0));
     const int which = (c->lamp + c->picture) % v->lamp_count;
     out->room = scaled(vec3_make(1, 1, 1), c->room / fmaxf(m->room, least));
     out->lamp[which] = scaled(c->color, strength / fmaxf(m->lamp[which], least));
@@ -201,7 +207,7 @@ static void draw_kind(const train_view *v, const means *m, const train_config *c
                       train_mixture *out)
 {
     const float flash = (float)c->flash_alone, room = flash + ROOM_ALONE, both = room + (float)c->flash_in_room;
-    const float least = 0.1f * m->flash + 1e-6f;
+    const float least = least_mean(m);
     out->kind = which < flash ? TRAIN_FLASH : which < room ? TRAIN_ROOM : TRAIN_MIXED;
     if (which < flash) {
         out->flash = vec3_make(1, 1, 1);
