@@ -173,6 +173,18 @@ static void huge_pictures_are_refused_by_their_header(void **state)
     assert_refused(scratch_path("wide.exr"), "20000 x 1");
 }
 
+/* Found by fuzzing: the size in blocks overflowed. */
+static void the_size_of_a_picture_may_be_the_largest_number(void **state)
+{
+    (void)state;
+    const uint8_t head[54] = {'B',  'M',  54,   [10] = 54, [14] = 40, [18] = 0xff,
+                              0xff, 0xff, 0x7f, 1,         [26] = 1,  [28] = 24};
+    int width = 0, height = 0;
+    put("wide.bmp", head, sizeof head);
+    if (img_read_size(scratch_path("wide.bmp"), &width, &height) == OK) assert_true(width > 0 && height == 1);
+    assert_true(width >= 0);
+}
+
 static void what_is_not_finite_is_refused(void **state)
 {
     (void)state;
@@ -208,6 +220,7 @@ int main(void)
         cmocka_unit_test(truncated_pictures_are_refused),
         cmocka_unit_test(every_thread_has_the_message_of_its_own_picture),
         cmocka_unit_test(huge_pictures_are_refused_by_their_header),
+        cmocka_unit_test(the_size_of_a_picture_may_be_the_largest_number),
         cmocka_unit_test(what_is_not_finite_is_refused),
         cmocka_unit_test(measurements_in_ink_are_refused),
     };

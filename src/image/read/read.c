@@ -72,6 +72,12 @@ static status look_into(const char *path, picture_kind kind, picture_head *head)
     return s;
 }
 
+/* Returns a side in blocks of pixels; a file may claim as many pixels as an int holds. */
+static int blocks_of(int side, int by)
+{
+    return (int)(((long long)side + by - 1) / by);
+}
+
 status img_read_size(const char *path, int *width, int *height)
 {
     picture_kind kind;
@@ -79,8 +85,8 @@ status img_read_size(const char *path, int *width, int *height)
     status s = look_at(path, &kind);
     if (s == OK) s = look_into(path, kind, &head);
     int by = s == OK ? picture_reduction(head.width, head.height) : 1;
-    *width = (head.width + by - 1) / by;
-    *height = (head.height + by - 1) / by;
+    *width = blocks_of(head.width, by);
+    *height = blocks_of(head.height, by);
     return s;
 }
 
