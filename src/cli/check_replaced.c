@@ -12,6 +12,7 @@
 
 #include "base/file.h"
 #include "base/lights/light_list.h"
+#include "base/text/map_names.h"
 #include "merlin/mesh.h"
 
 static status refuse(const char *folder, const char *name)
@@ -68,20 +69,17 @@ static status find_capture(const char *folder, bool *holds)
     if (s != OK) return s == MERLIN_NO_MEMORY ? s : OK;
     for (size_t i = 0; i < count; i++) {
         const char *name = file_name_of(names[i]);
-        *holds |= is_among(light_list_names, name) || is_among(data_sets, name) || file_ends_in(name, ".lp");
+        *holds |= light_list_is_name(name) || is_among(data_sets, name);
     }
     file_list_free(names, count);
     return OK;
 }
 
-static const char *const maps[] = {"mask.png",  "normal.png",         "albedo.png",   "roughness.png",  "depth.png",
-                                   "error.png", "reconstruction.png", "overview.png", "confidence.png", NULL};
-
 status check_inputs_kept(const char *folder, const char *photo, const char *mask)
 {
     status s = OK;
-    for (int i = 0; maps[i] && s == OK; i++) {
-        char *path = file_join(folder, maps[i]);
+    for (int i = 0; map_names[i] && s == OK; i++) {
+        char *path = file_join(folder, map_names[i]);
         if (!path) return fail(MERLIN_NO_MEMORY, "no memory for a file name");
         if (file_is_same(photo, path) || (mask && file_is_same(mask, path)))
             s = fail(MERLIN_CANNOT_WRITE, "cannot write %s: it is what was read; copy it, or choose another folder",
@@ -96,7 +94,7 @@ status check_replaced(const char *folder, bool meshes)
     static const char *const own[] = {"maps.exr", "report.json", NULL};
     static const char *const surface[] = {"mesh.ply", "mesh.obj", "mesh.glb", NULL};
     if (!file_is_folder(folder) || first_in(folder, own)) return OK;
-    const char *name = first_in(folder, maps);
+    const char *name = first_in(folder, map_names);
     status s = name ? refuse(folder, name) : OK;
     for (int i = 0; meshes && s == OK && surface[i]; i++)
         s = check_mesh(folder, surface[i]);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What maps were made of, in their report.json: names and sizes of the photograph's and the mask's files. By them
+/* Notes in the report.json of maps what they were made of: names and sizes of the photograph's and the mask's files. By
+ * them
  * --resume tells the maps of cup.png from those of cup.jpg, whose folder may have the same name. */
 #ifndef MERLIN_COMMAND_PHOTO_SOURCE_H
 #define MERLIN_COMMAND_PHOTO_SOURCE_H

@@ -46,6 +46,20 @@ void merlin_image_free(merlin_image *image)
     img_free(image);
 }
 
+status img_make_color(img *image)
+{
+    if (image->channels == 3) return OK;
+    img color;
+    status s = img_new(&color, image->width, image->height, 3);
+    if (s != OK) return s;
+    const size_t count = img_value_count(&color);
+    for (size_t i = 0; i < count; i++)
+        color.data[i] = image->data[i / 3];
+    img_free(image);
+    *image = color;
+    return OK;
+}
+
 status img_copy(img *out, const img *from)
 {
     status s = make(out, from->width, from->height, from->channels, malloc);

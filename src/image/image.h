@@ -20,6 +20,9 @@ status img_new(img *out, int width, int height, int channels);
 void img_free(img *image);
 status img_copy(img *out, const img *from);
 
+/* Gives a grey image, of 1 channel, three equal ones; leaves one of 3 as it is. MERLIN_NO_MEMORY, and then it stays. */
+status img_make_color(img *image);
+
 /* The part of a mask's row (1 channel) that is not zero: from the first such pixel to before `end`; 0 to 0 if there is
  * none. */
 typedef struct img_span {

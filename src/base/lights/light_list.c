@@ -2,8 +2,18 @@
 #include "base/lights/light_list.h"
 
 #include <stdlib.h>
+#include <strings.h>
+
+#include "base/file.h"
 
 const char *const light_list_names[] = {"lights.txt", "lights.csv", "lights.tsv", "lights.dat", NULL};
+
+bool light_list_is_name(const char *name)
+{
+    for (int i = 0; light_list_names[i]; i++)
+        if (strcasecmp(name, light_list_names[i]) == 0) return true;
+    return file_ends_in(name, ".lp");
+}
 
 void light_list_free(light_list *list)
 {

@@ -24,6 +24,8 @@ enum { LIGHT_LIST_MAX = 4096, LIGHT_LIST_NOTE = 256 };
 
 /* Names by which a folder's list of lights is found, up to NULL; an .lp file may have any. */
 extern const char *const light_list_names[];
+/* Tells whether a file's name is one of these, in any case, or ends in .lp. */
+bool light_list_is_name(const char *name);
 
 /* The first words of a list that merlin stereo calibrate has written, by which its own is known again. */
 #define LIGHT_LIST_OF_CALIBRATION "# Directions to the lights, found from"

@@ -39,8 +39,9 @@ static int find_layer(const exr_file *f, channel_name names[3])
         snprintf(layer, NAME_SIZE, "%.*s", (int)n - 1, name);
         for (int c = 0; c < 3; c++)
             snprintf(own[c], NAME_SIZE, "%.*s%c", (int)n - 1, name, "RGB"[c]);
-        if (!exr_has_channel(f, own[1]) || !exr_has_channel(f, own[2]) || rank_of(layer) <= best) continue;
-        best = rank_of(layer);
+        const int rank = rank_of(layer);
+        if (!exr_has_channel(f, own[1]) || !exr_has_channel(f, own[2]) || rank <= best) continue;
+        best = rank;
         memcpy(names, own, sizeof own);
     }
     return best < 0 ? 0 : 3;

@@ -10,6 +10,7 @@
 #include "base/api_needs.h"
 #include "base/file.h"
 #include "base/skipped.h"
+#include "base/text/map_names.h"
 #include "base/text/mesh_parts.h"
 #include "image/read/folder.h"
 #include "image/read/mask_names.h"
@@ -32,12 +33,9 @@ static bool is_mesh_name(const char *name)
 /* Tells whether estimate and stereo write a file of this name with maps.exr. */
 static bool is_result_name(const char *name)
 {
-    static const char *const results[] = {"albedo.png",         "confidence.png", "depth.png",  "error.png",
-                                          "maps.exr",           "mask.png",       "normal.png", "overview.png",
-                                          "reconstruction.png", "roughness.png",  "report.json"};
-    for (size_t i = 0; i < sizeof results / sizeof results[0]; i++)
-        if (strcmp(name, results[i]) == 0) return true;
-    return is_mesh_name(name);
+    for (int i = 0; map_names[i]; i++)
+        if (strcmp(name, map_names[i]) == 0) return true;
+    return strcmp(name, "maps.exr") == 0 || strcmp(name, "report.json") == 0 || is_mesh_name(name);
 }
 
 static status no_memory(void)

@@ -96,14 +96,13 @@ static value *find_value(tally *t, const float *sample, int channels)
 }
 
 /* Counts a pixel by those around it. */
-static void count_pixel(const img *m, int x, int y, value *v)
+static void count_pixel(const img *m, size_t pixel, value *v)
 {
-    static const int way[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
+    size_t beside[4];
+    const int count = img_beside(m->width, m->height, pixel, beside);
     bool inside = true;
-    for (int i = 0; i < 4; i++) {
-        const int u = x + way[i][0], w = y + way[i][1];
-        if (u < 0 || u >= m->width || w < 0 || w >= m->height) continue;
-        const float *around = img_at(m, u, w);
+    for (int i = 0; i < count; i++) {
+        const float *around = m->data + beside[i] * (size_t)m->channels;
         if (is_same(v->sample, around, m->channels)) continue;
         const float step = brightness_of(around, m->channels) - v->brightness;
         inside = false;
@@ -117,14 +116,14 @@ static void count_pixel(const img *m, int x, int y, value *v)
 
 static void count_values(const img *m, tally *t)
 {
+    const size_t pixels = (size_t)m->width * (size_t)m->height;
     value *last = NULL;
-    for (int y = 0; y < m->height && !t->many; y++)
-        for (int x = 0; x < m->width && !t->many; x++) {
-            const float *sample = img_at(m, x, y);
-            if (!last || !is_same(last->sample, sample, m->channels)) last = find_value(t, sample, m->channels);
-            if (!last) return;
-            count_pixel(m, x, y, last);
-        }
+    for (size_t i = 0; i < pixels; i++) {
+        const float *sample = m->data + i * (size_t)m->channels;
+        if (!last || !is_same(last->sample, sample, m->channels)) last = find_value(t, sample, m->channels);
+        if (!last) return;
+        count_pixel(m, i, last);
+    }
 }
 
 /* ---- values with areas of their own ---- */

@@ -156,26 +156,12 @@ static void clamp_unit(img *image)
         image->data[i] = clamp(image->data[i], 0, 1);
 }
 
-static status grey_to_color(img *image)
-{
-    if (image->channels == 3) return OK;
-    img color;
-    status s = img_new(&color, image->width, image->height, 3);
-    if (s != OK) return s;
-    size_t pixels = (size_t)image->width * (size_t)image->height;
-    for (size_t i = 0; i < 3 * pixels; i++)
-        color.data[i] = image->data[i / 3];
-    img_free(image);
-    *image = color;
-    return OK;
-}
-
 status img_read(const char *path, img *color, img *alpha)
 {
     *color = (img){0};
     if (alpha) *alpha = (img){0};
     status s = read_any(path, PICTURE_LINEARIZE, color, alpha);
-    if (s == OK) s = grey_to_color(color);
+    if (s == OK) s = img_make_color(color);
     if (s == OK && alpha && alpha->data) clamp_unit(alpha);
     if (s == OK) return OK;
     img_free(color);

@@ -66,10 +66,8 @@ static status check_other_lists(const char *folder, const char *path, merlin_cap
     status s = file_list(folder, NULL, &names, &count);
     if (s != OK) return s;
     for (size_t i = 0; i < count && s == OK; i++) {
-        bool usual = file_ends_in(names[i], ".lp");
-        for (size_t k = 0; light_list_names[k]; k++)
-            usual |= strcasecmp(file_name_of(names[i]), light_list_names[k]) == 0;
-        if (usual && strcmp(file_name_of(names[i]), file_name_of(path)) != 0) s = compare_lists(path, names[i], c);
+        const char *name = file_name_of(names[i]);
+        if (light_list_is_name(name) && strcmp(name, file_name_of(path)) != 0) s = compare_lists(path, names[i], c);
     }
     file_list_free(names, count);
     return s;

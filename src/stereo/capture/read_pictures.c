@@ -23,7 +23,7 @@ typedef struct ambient_sums {
     size_t lit, below, other;
 } ambient_sums;
 
-/* Whether a picture has colours; a black one has none, as programs save it in grey. */
+/* Kinds of pictures by their colours; a black one has none, as programs save it in grey. */
 typedef enum picture_tone { TONE_BLACK, TONE_GREY, TONE_COLOUR } picture_tone;
 
 typedef struct reading {
@@ -101,26 +101,18 @@ static status check_shape(const reading *r, const merlin_capture *c, const char 
 
 /* ---- grey pictures among colour ones ---- */
 
-/* Gives a grey picture three equal channels where the capture has colours. */
+/* Gives a picture colours where the capture has them. */
 static status colour_as(const merlin_capture *c, img *picture)
 {
-    img coloured;
-    if (picture->channels == c->channels || !picture->data) return OK;
-    status s = img_new(&coloured, picture->width, picture->height, 3);
-    if (s != OK) return s;
-    for (size_t i = 0, n = img_value_count(&coloured); i < n; i++)
-        coloured.data[i] = picture->data[i / 3];
-    img_free(picture);
-    *picture = coloured;
-    return OK;
+    return c->channels > 1 && picture->data ? img_make_color(picture) : OK;
 }
 
 static picture_tone tone_of(const reading *r, const img *picture)
 {
-    float most = 0;
+    if (picture->channels > 1) return TONE_COLOUR;
     for (size_t i = 0, n = img_value_count(picture); i < n; i++)
-        most = fmaxf(most, picture->data[i]);
-    return picture->channels > 1 ? TONE_COLOUR : most * r->scale < PST_BLACK ? TONE_BLACK : TONE_GREY;
+        if (picture->data[i] * r->scale >= PST_BLACK) return TONE_GREY;
+    return TONE_BLACK;
 }
 
 static int count_tone(const reading *r, picture_tone tone)

@@ -84,13 +84,20 @@ static void draw_shares(const train_view *v, rng *r, float *flash, float *room, 
         shares[(first + k) % v->lamp_count] = draw_weight(r);
 }
 
+/* Switches flash and surroundings on, by their weights. */
+static void put_flash_and_room(const means *m, float flash, float room, train_mixture *out)
+{
+    const float least = least_mean(m);
+    out->flash = scaled(vec3_make(1, 1, 1), flash / fmaxf(m->flash, least));
+    out->room = scaled(vec3_make(1, 1, 1), room / fmaxf(m->room, least));
+}
+
 static void draw_mixed(const train_view *v, const means *m, rng *r, train_mixture *out)
 {
     float flash = 0, room = 0, shares[TRAIN_LAMPS] = {0};
     draw_shares(v, r, &flash, &room, shares);
     const float least = least_mean(m);
-    out->flash = scaled(vec3_make(1, 1, 1), flash / fmaxf(m->flash, least));
-    out->room = scaled(vec3_make(1, 1, 1), room / fmaxf(m->room, least));
+    put_flash_and_room(m, flash, room, out);
     for (int k = 0; k < v->lamp_count; k++)
         out->lamp[k] = scaled(draw_color(r), shares[k] / fmaxf(m->lamp[k], least));
 }
@@ -198,7 +205,7 @@ static void draw_torch(const train_view *v, const means *m, const train_capture 
 {
     const float least = least_mean(m), strength = expf(rng_range(r, -0.7f, 0));
     const int which = (c->lamp + c->picture) % v->lamp_count;
-    out->room = scaled(vec3_make(1, 1, 1), c->room / fmaxf(m->room, least));
+    put_flash_and_room(m, 0, c->room, out);
     out->lamp[which] = scaled(c->color, strength / fmaxf(m->lamp[which], least));
 }
 
@@ -207,18 +214,18 @@ static void draw_kind(const train_view *v, const means *m, const train_config *c
                       train_mixture *out)
 {
     const float flash = (float)c->flash_alone, room = flash + ROOM_ALONE, both = room + (float)c->flash_in_room;
-    const float least = least_mean(m);
-    out->kind = which < flash ? TRAIN_FLASH : which < room ? TRAIN_ROOM : TRAIN_MIXED;
     if (which < flash) {
+        out->kind = TRAIN_FLASH;
         out->flash = vec3_make(1, 1, 1);
     } else if (which < room) {
+        out->kind = TRAIN_ROOM;
         out->room = vec3_make(1, 1, 1);
     } else if (which < both) {
-        out->flash = scaled(vec3_make(1, 1, 1), draw_weight(r) / fmaxf(m->flash, least));
-        out->room = scaled(vec3_make(1, 1, 1), draw_weight(r) / fmaxf(m->room, least));
+        const float weight = draw_weight(r);
+        put_flash_and_room(m, weight, draw_weight(r), out);
     } else if (which < both + (float)c->lamp_alone) {
         const int k = rng_below(r, v->lamp_count);
-        out->lamp[k] = scaled(draw_color(r), 1 / fmaxf(m->lamp[k], least));
+        out->lamp[k] = scaled(draw_color(r), 1 / fmaxf(m->lamp[k], least_mean(m)));
     } else {
         draw_mixed(v, m, r, out);
     }
