@@ -114,7 +114,8 @@ static status read_square(const frame *f, int k, img *out)
             if (column < 0 || row < 0 || column >= c->width || row >= c->height) continue;
             const size_t i = (size_t)row * (size_t)c->width + (size_t)column;
             for (size_t ch = 0; ch < 3 && c->mask.data[i] > 0.5f; ch++)
-                img_at(out, x, y)[ch] = factor[ch] * (float)c->picture[k][i * channels + (channels == 3 ? ch : 0)];
+                img_at(out, x, y)[ch] =
+                    factor[ch] * (float)pst_code(&c->picture[k], i * channels + (channels == 3 ? ch : 0));
         }
     return s;
 }

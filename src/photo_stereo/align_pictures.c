@@ -55,12 +55,12 @@ static status brightness_of(const merlin_capture *c, int k, int side, img *out)
     const float share = 1 / (65535 * (float)(side * side) * (float)channels);
     status s = img_new(out, c->width / side, c->height / side, 1);
     for (int y = 0; s == OK && y < side * out->height; y++) {
-        const uint16_t *from = c->picture[k] + (size_t)y * (size_t)c->width * channels;
+        size_t from = (size_t)y * (size_t)c->width * channels;
         float *to = img_at(out, 0, y / side);
         for (int x = 0; x < out->width; x++) {
             uint32_t sum = 0;
             for (size_t i = 0; i < run; i++)
-                sum += *from++;
+                sum += pst_code(&c->picture[k], from++);
             to[x] += share * (float)sum;
         }
     }
@@ -349,17 +349,22 @@ static status refuse_far(const merlin_capture *c, shift *by)
 
 /* ---- pictures ---- */
 
-static status move_picture(const merlin_capture *c, int k, shift by, uint16_t **out)
+static status move_picture(const merlin_capture *c, int k, shift by, pst_plane *out)
 {
-    const size_t pixel = (size_t)c->channels * sizeof **out, width = (size_t)c->width;
+    const pst_plane *picture = &c->picture[k];
+    const size_t pixel = (size_t)c->channels * pst_plane_bytes(picture), width = (size_t)c->width;
     char *to = calloc(width * (size_t)c->height, pixel);
     if (!to) return fail(MERLIN_NO_MEMORY, "no memory to move a picture");
     const int left = first_of(by.x), right = end_of(by.x, c->width);
     for (int y = first_of(by.y); y < end_of(by.y, c->height) && left < right; y++) {
         const size_t at = (size_t)y * width + (size_t)left, from = (size_t)(y + by.y) * width + (size_t)(left + by.x);
-        memcpy(to + at * pixel, (const char *)c->picture[k] + from * pixel, (size_t)(right - left) * pixel);
+        memcpy(to + at * pixel, pst_plane_data(picture) + from * pixel, (size_t)(right - left) * pixel);
     }
-    *out = (uint16_t *)(void *)to;
+    *out = *picture;
+    if (picture->narrow)
+        out->narrow = (uint8_t *)to;
+    else
+        out->wide = (uint16_t *)(void *)to;
     return OK;
 }
 
@@ -400,7 +405,8 @@ status align_pictures(const merlin_capture *c, merlin_capture *out, picture_shif
 void align_pictures_free(const merlin_capture *c, merlin_capture *aligned)
 {
     for (int k = 0; k < c->count && aligned->picture; k++)
-        if (aligned->picture[k] != c->picture[k]) free(aligned->picture[k]);
+        if (pst_plane_data(&aligned->picture[k]) != pst_plane_data(&c->picture[k]))
+            pst_plane_free(&aligned->picture[k]);
     free(aligned->picture);
     *aligned = (merlin_capture){0};
 }

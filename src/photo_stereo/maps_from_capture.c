@@ -44,11 +44,11 @@ static status photograph(const seen *s, int which, img *out)
 {
     const merlin_capture *c = s->capture;
     const size_t pixels = (size_t)c->width * (size_t)c->height, channels = (size_t)c->channels;
-    const uint16_t *from = c->picture[s->number[which]];
+    const pst_plane *from = &c->picture[s->number[which]];
     status st = img_new(out, c->width, c->height, 3);
     for (size_t i = 0; st == OK && i < pixels; i++)
         for (size_t ch = 0; ch < 3; ch++)
-            out->data[3 * i + ch] = (float)from[channels * i + (ch < channels ? ch : 0)] / 65535;
+            out->data[3 * i + ch] = (float)pst_code(from, channels * i + (ch < channels ? ch : 0)) / 65535;
     return st;
 }
 

@@ -23,7 +23,7 @@ static void choose(const merlin_capture *all, int subset, merlin_capture *some)
     }
     for (int i = 0; i < some->count; i++) {
         int other = i + rng_below(&r, all->count - i);
-        uint16_t *picture = some->picture[i];
+        pst_plane picture = some->picture[i];
         merlin_light light = some->light[i];
         char *name = some->name[i];
         some->picture[i] = some->picture[other];

@@ -62,14 +62,14 @@ static void capture_of(merlin_capture *c)
         c->light[k].position[0] = (float)(k - 2) * 0.3f;
         c->light[k].position[1] = (float)(k % 2) * 0.3f;
         c->name[k] = strdup("light");
-        c->picture[k] = calloc(WIDTH * HEIGHT, sizeof **c->picture);
-        assert_non_null(c->picture[k]);
+        c->picture[k].wide = calloc(WIDTH * HEIGHT, sizeof(uint16_t));
+        assert_non_null(c->picture[k].wide);
     }
     for (int i = 0; i < WIDTH * HEIGHT; i++) {
         const float x = ((float)(i % WIDTH) - 85) / 34, y = ((float)(i / WIDTH) - 44) / 25;
         c->mask.data[i] = x * x + y * y < 1;
         for (int k = 0; k < LIGHTS; k++)
-            c->picture[k][i] = (uint16_t)(c->mask.data[i] * (20000 + 3000 * (float)k * x));
+            c->picture[k].wide[i] = (uint16_t)(c->mask.data[i] * (20000 + 3000 * (float)k * x));
     }
 }
 

@@ -26,8 +26,9 @@ static void move(merlin_capture *c, int k, int x, int y)
         for (int i = 0; i < SIZE; i++)
             if (i - x >= 0 && i - x < SIZE && j - y >= 0 && j - y < SIZE)
                 memcpy(to + ((size_t)j * SIZE + (size_t)i) * channels,
-                       c->picture[k] + ((size_t)(j - y) * SIZE + (size_t)(i - x)) * channels, channels * sizeof *to);
-    memcpy(c->picture[k], to, values * sizeof *to);
+                       c->picture[k].wide + ((size_t)(j - y) * SIZE + (size_t)(i - x)) * channels,
+                       channels * sizeof *to);
+    memcpy(c->picture[k].wide, to, values * sizeof *to);
     free(to);
 }
 
@@ -40,7 +41,7 @@ static void make(int channels, merlin_capture *c)
         for (int i = 0; i < SIZE * SIZE * channels; i++) {
             const int across = i / channels % SIZE / 7, down = i / channels / SIZE / 9;
             if (across * across * down % 3 == 1 || across * down % 5 == 2)
-                c->picture[k][i] = (uint16_t)(c->picture[k][i] / 2);
+                c->picture[k].wide[i] = (uint16_t)(c->picture[k].wide[i] / 2);
         }
 }
 
@@ -53,7 +54,7 @@ static void still_pictures_stay(void **state)
     assert_int_equal(align_pictures(&c, &aligned, &shifts), OK);
     assert_int_equal(shifts.moved, 0);
     for (int k = 0; k < LIGHTS; k++)
-        assert_ptr_equal(aligned.picture[k], c.picture[k]);
+        assert_ptr_equal(aligned.picture[k].wide, c.picture[k].wide);
     align_pictures_free(&c, &aligned);
     capture_drop(&c);
 }
@@ -74,8 +75,8 @@ static void moved_pictures_come_back(int channels, bool masked)
     assert_int_equal(shifts.most, 5);
     for (int k = 0; k < LIGHTS; k++)
         for (int j = 8; j < SIZE - 8; j++)
-            assert_memory_equal(aligned.picture[k] + (size_t)(j * SIZE + 8) * (size_t)channels,
-                                still.picture[k] + (size_t)(j * SIZE + 8) * (size_t)channels,
+            assert_memory_equal(aligned.picture[k].wide + (size_t)(j * SIZE + 8) * (size_t)channels,
+                                still.picture[k].wide + (size_t)(j * SIZE + 8) * (size_t)channels,
                                 sizeof(uint16_t) * (SIZE - 16) * (size_t)channels);
     align_pictures_free(&c, &aligned);
     c.mask = mask;
@@ -118,7 +119,7 @@ static void two_pictures_under_far_lights_did_not_move(void **state)
     for (int a = 0; a < 10; a++)
         for (int b = 0; b < a; b++) {
             merlin_capture two = all;
-            uint16_t *pair[] = {all.picture[a], all.picture[b]};
+            pst_plane pair[] = {all.picture[a], all.picture[b]};
             two.count = 2;
             two.picture = pair;
             if (align_pictures(&two, &aligned, &shifts) != OK) fail_msg("%d and %d: %s", a, b, status_message());
@@ -132,8 +133,8 @@ static void keep_square(merlin_capture *c, int k, int first, int side, int by)
 {
     uint16_t square[SIZE][SIZE] = {{0}};
     for (int y = first; y < first + side; y++)
-        memcpy(&square[y + by][first + by], c->picture[k] + y * SIZE + first, (size_t)side * sizeof **square);
-    memcpy(c->picture[k], square, sizeof square);
+        memcpy(&square[y + by][first + by], c->picture[k].wide + y * SIZE + first, (size_t)side * sizeof **square);
+    memcpy(c->picture[k].wide, square, sizeof square);
 }
 
 /* A few places are lit, which are alike, as bands along an outline are under lamps far aside. */
@@ -160,7 +161,7 @@ static void one_picture_has_nothing_to_fit(void **state)
     const int count = c.count;
     c.count = 1;
     assert_int_equal(align_pictures(&c, &aligned, &shifts), OK);
-    assert_ptr_equal(aligned.picture[0], c.picture[0]);
+    assert_ptr_equal(aligned.picture[0].wide, c.picture[0].wide);
     align_pictures_free(&c, &aligned);
     c.count = count;
     capture_drop(&c);

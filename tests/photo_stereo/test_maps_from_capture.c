@@ -73,7 +73,7 @@ static void files_are_heeded(void **state)
     merlin_maps maps;
     merlin_warnings all;
     picture_sphere(3, 1, &c);
-    memcpy(c.picture[1], c.picture[0], (size_t)c.width * (size_t)c.height * sizeof **c.picture);
+    memcpy(c.picture[1].wide, c.picture[0].wide, (size_t)c.width * (size_t)c.height * sizeof(uint16_t));
     warnings_add(&c.noticed, "light_still", "the light is still");
     assert_int_equal(skipped_add(&c.skipped, "a.jxl", "JPEG XL is not read"), OK);
     c.focal_35mm = 85;
@@ -147,7 +147,7 @@ static void one_picture_is_a_photograph(void **state)
     picture_sphere(1, 3, &c);
     assert_int_equal(img_new(&photo, SIZE, SIZE, 3), OK);
     for (int i = 0; i < 3 * SIZE * SIZE; i++)
-        photo.data[i] = (float)c.picture[0][i] / 65535;
+        photo.data[i] = (float)c.picture[0].wide[i] / 65535;
     assert_int_equal(merlin_maps_from_capture(f->any, &c, &p, &maps), MERLIN_OK);
     assert_int_equal(merlin_estimate(f->any, &photo, &c.mask, &p, &alone), MERLIN_OK);
     assert_memory_equal(maps.normal.data, alone.normal.data, sizeof(float) * 3 * SIZE * SIZE);
@@ -250,7 +250,8 @@ static void an_object_is_searched_for_where_all_is_bright(void **state)
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < SIZE * SIZE; i++)
             if (c.mask.data[i] == 0) /* a blue wall */
-                c.picture[k][3 * i] = 3000, c.picture[k][3 * i + 1] = 5000, c.picture[k][3 * i + 2] = 30000;
+                c.picture[k].wide[3 * i] = 3000, c.picture[k].wide[3 * i + 1] = 5000,
+                                      c.picture[k].wide[3 * i + 2] = 30000;
     size_t object = 0, found = 0, both = 0;
     img truth;
     assert_int_equal(img_copy(&truth, &c.mask), OK);

@@ -76,7 +76,7 @@ static void pictures_are_black_far_from_a_given_mask(void **state)
         for (int x = 0; x < WIDTH; x++) {
             const bool near = x >= X - MARGIN && x < X + 5 + MARGIN && y >= Y - MARGIN && y < Y + 3 + MARGIN;
             for (int ch = 0; ch < 3; ch++)
-                assert_int_equal(c.picture[2][3 * (y * WIDTH + x) + ch] > 0, near);
+                assert_int_equal(pst_code(&c.picture[2], 3 * (y * WIDTH + x) + ch) > 0, near);
         }
     pst_capture_free(&c);
     img_free(&mask);

@@ -72,7 +72,7 @@ static void take(shape what, float noise, merlin_capture *c)
         for (int k = 0; k < LIGHTS; k++) {
             float seen =
                 0.6f * fmaxf(vec3_dot(n, vec3_of(c->light[k].direction)), 0) + noise * (rng_uniform(&random) - 0.5f);
-            c->picture[k][i] = relief_code(fmaxf(seen, 0));
+            c->picture[k].wide[i] = relief_code(fmaxf(seen, 0));
         }
     }
 }
@@ -216,7 +216,7 @@ static void a_copied_picture_is_named(void **state)
     (void)state;
     merlin_capture c;
     take(PEAR, 0.01f, &c);
-    memcpy(c.picture[6], c.picture[4], (size_t)SIZE * SIZE * sizeof **c.picture);
+    memcpy(c.picture[6].wide, c.picture[4].wide, (size_t)SIZE * SIZE * sizeof(uint16_t));
     assert_told(&c, "same_pictures", "pictures 5 and 7 are the same");
     c.light[6] = c.light[4];
     warnings doubts = doubts_of(&c);
@@ -231,7 +231,7 @@ static void burnt_out_pictures_are_told(void **state)
     take(BALL, 0.01f, &c);
     for (int k = 0; k < LIGHTS; k++)
         for (int i = 0; i < SIZE * SIZE; i++)
-            c.picture[k][i] = relief_code(4 * (float)c.picture[k][i] / 65535);
+            c.picture[k].wide[i] = relief_code(4 * (float)c.picture[k].wide[i] / 65535);
     assert_told(&c, "burnt_out", "take them darker");
     capture_drop(&c);
 }
@@ -286,7 +286,7 @@ static void other_strengths_than_equal_ones_are_told(void **state)
     take(PEAR, 0, &c);
     for (int k = 0; k < LIGHTS; k++)
         for (int i = 0; i < SIZE * SIZE; i++)
-            c.picture[k][i] = (uint16_t)((float)c.picture[k][i] * (0.45f + 0.05f * (float)(7 * k % LIGHTS)));
+            c.picture[k].wide[i] = (uint16_t)((float)c.picture[k].wide[i] * (0.45f + 0.05f * (float)(7 * k % LIGHTS)));
     assert_told(&c, "strengths_unequal", "light_intensities.txt");
     for (int k = 0; k < LIGHTS; k++)
         for (int ch = 0; ch < 3; ch++)
@@ -299,7 +299,7 @@ static void change_tones(merlin_capture *c, float (*tone)(float))
 {
     for (int k = 0; k < LIGHTS; k++)
         for (int i = 0; i < SIZE * SIZE; i++)
-            c->picture[k][i] = (uint16_t)lrintf(65535 * tone((float)c->picture[k][i] / 65535));
+            c->picture[k].wide[i] = (uint16_t)lrintf(65535 * tone((float)c->picture[k].wide[i] / 65535));
 }
 
 static void tones_that_were_taken_for_others_are_told(void **state)
@@ -343,7 +343,7 @@ static void take_near(merlin_capture *c)
         for (int k = 0; k < LIGHTS; k++) {
             vec3 to = vec3_sub(vec3_of(c->light[k].position), at);
             float far = vec3_length(to);
-            c->picture[k][i] = relief_code(fmaxf(vec3_dot(n, to), 0) / (far * far * far));
+            c->picture[k].wide[i] = relief_code(fmaxf(vec3_dot(n, to), 0) / (far * far * far));
         }
     }
 }

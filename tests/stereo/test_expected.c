@@ -24,7 +24,7 @@ static void dim_some(merlin_capture *c, float least)
 {
     for (int k = 0; k < LIGHTS; k++)
         for (int i = 0; i < c->width * c->height * c->channels; i++)
-            c->picture[k][i] = (uint16_t)((float)c->picture[k][i] * share_of(k, least));
+            c->picture[k].wide[i] = (uint16_t)((float)c->picture[k].wide[i] * share_of(k, least));
     pst_capture_forget_lights(c);
     c->intensities_known = false;
 }
@@ -233,7 +233,7 @@ static void few_pictures_of_several_objects_are_unsure(void **state)
     for (int k = 0; k < FEW; k++)
         for (int i = 0; i < BALL_SIZE * BALL_SIZE; i++) {
             rng r = rng_at(3, (uint64_t)(i / BALL_SIZE / 12 * 100 + i % BALL_SIZE / 12), (uint64_t)k);
-            if (rng_uniform(&r) < 0.5f) c.picture[k][i] = (uint16_t)(c.picture[k][i] / 4);
+            if (rng_uniform(&r) < 0.5f) c.picture[k].wide[i] = (uint16_t)(c.picture[k].wide[i] / 4);
         }
     const pst_expected expected = ball_as_expected(&e);
     assert_int_equal(pst_solve_expecting(&c, &unknown, &expected, &s), OK);

@@ -41,7 +41,7 @@ static void roof_new(roof *r)
         vec3_put(l, r->capture.light[k].direction);
         for (int i = 0; i < SIZE * SIZE; i++) {
             float value = relief_radiance(&matte_relief, 0.8f, roof_normal(i % SIZE), l);
-            r->capture.picture[k][i] = relief_code(value * (0.94f + 0.12f * rng_uniform(&random)));
+            r->capture.picture[k].wide[i] = relief_code(value * (0.94f + 0.12f * rng_uniform(&random)));
         }
     }
     for (int i = 0; i < SIZE * SIZE; i++)

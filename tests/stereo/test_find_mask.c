@@ -30,7 +30,7 @@ static void disc_capture(float radius, float background, float noise, merlin_cap
     for (int k = 0; k < PICTURES; k++) {
         for (int i = 0; i < SIZE * SIZE * 3; i++) {
             float level = in_disc(i / 3, radius) ? 0.05f * (float)(k + 1) : background;
-            c->picture[k][i] = relief_code(fmaxf(level + rng_range(&r, -noise, noise), 0));
+            c->picture[k].wide[i] = relief_code(fmaxf(level + rng_range(&r, -noise, noise), 0));
         }
     }
 }
@@ -85,7 +85,7 @@ static void what_is_dim_counts_where_it_hangs_together_with_more(void **state)
             bool rim = in_disc(i, 22) && !in_disc(i, 20),
                  island = i % SIZE < 10 && i % SIZE > 3 && i / SIZE < 10 && i / SIZE > 3;
             for (int ch = 0; ch < 3; ch++)
-                if (rim || island) c.picture[k][3 * i + ch] = dim;
+                if (rim || island) c.picture[k].wide[3 * i + ch] = dim;
         }
     }
     assert_int_equal(pst_capture_find_mask(&c), OK);
@@ -106,14 +106,14 @@ static void small_holes_and_specks_are_settled(void **state)
         for (int y = 0; y < 3; y++)
             for (int x = 0; x < 3; x++)
                 for (int ch = 0; ch < 3; ch++) {
-                    c.picture[k][3 * ((20 + y) * SIZE + 30 + x) + ch] = 0;
-                    c.picture[k][3 * ((2 + y) * SIZE + 2 + x) + ch] = 9000;
+                    c.picture[k].wide[3 * ((20 + y) * SIZE + 30 + x) + ch] = 0;
+                    c.picture[k].wide[3 * ((2 + y) * SIZE + 2 + x) + ch] = 9000;
                 }
         for (int y = 0; y < 6; y++)
             for (int x = 0; x < 6; x++)
                 for (int ch = 0; ch < 3; ch++) {
-                    c.picture[k][3 * ((35 + y) * SIZE + 30 + x) + ch] = 0;
-                    c.picture[k][3 * ((56 + y) * SIZE + 2 + x) + ch] = 9000;
+                    c.picture[k].wide[3 * ((35 + y) * SIZE + 30 + x) + ch] = 0;
+                    c.picture[k].wide[3 * ((56 + y) * SIZE + 2 + x) + ch] = 9000;
                 }
     }
     assert_int_equal(pst_capture_find_mask(&c), OK);
@@ -129,8 +129,9 @@ static void any_size_is_taken(void **state)
     static const int sizes[][2] = {{520, 260}, {1, 40}, {40, 1}, {1, 1}};
     for (size_t n = 0; n < sizeof sizes / sizeof *sizes; n++) {
         int width = sizes[n][0], height = sizes[n][1];
-        uint16_t *picture = calloc((size_t)width * (size_t)height, sizeof *picture), *pictures[] = {picture};
-        merlin_capture c = {.width = width, .height = height, .channels = 1, .count = 1, .picture = pictures};
+        uint16_t *picture = calloc((size_t)width * (size_t)height, sizeof *picture);
+        pst_plane plane = {.wide = picture};
+        merlin_capture c = {.width = width, .height = height, .channels = 1, .count = 1, .picture = &plane};
         for (int i = 0; i < width * height; i++) {
             int x = i % width, y = i / width;
             bool inside = 4 * x >= width && 4 * x < 3 * width && 4 * y >= height && 4 * y < 3 * height;
@@ -152,7 +153,7 @@ static void an_object_may_fill_the_picture(void **state)
     disc_capture(100, 0, 0, &c);
     for (int k = 0; k < PICTURES; k++)
         for (int i = 0; i < SIZE * 3; i++)
-            c.picture[k][i] = 400;
+            c.picture[k].wide[i] = 400;
     assert_int_equal(pst_capture_find_mask(&c), OK);
     for (int i = 0; i < SIZE * SIZE; i++)
         assert_true(c.mask.data[i] == 1);

@@ -43,7 +43,7 @@ static void ball_pixel(merlin_capture *c, int i, int j, bool far)
     c->mask.data[pixel] = 1;
     memcpy(c->normal_true.data + 3 * pixel, &(float[3]){n.x, n.y, n.z}, 3 * sizeof(float));
     for (int k = 0; k < LIGHTS; k++)
-        c->picture[k][pixel] = relief_code(0.4f * shade(at, n, about_ball(k), far));
+        c->picture[k].wide[pixel] = relief_code(0.4f * shade(at, n, about_ball(k), far));
 }
 
 /* As a list of places about the object is read, whose lights stand there or are far away. */

@@ -21,19 +21,19 @@ static void small_pixels_are_the_objects_means(void **state)
     for (int i = 0; i < SIZE * SIZE; i++) {
         c.mask.data[i] = i % SIZE < 6 ? 1 : 0;
         for (int ch = 0; ch < 3; ch++)
-            c.picture[0][3 * i + ch] = (uint16_t)(i % SIZE < 6 ? 100 * (i % SIZE) + ch : 9999);
+            c.picture[0].wide[3 * i + ch] = (uint16_t)(i % SIZE < 6 ? 100 * (i % SIZE) + ch : 9999);
     }
     c.camera.focal = 20;
     assert_int_equal(pst_shrink(&c, pst_blocks_of(&c, FACTOR), PST_SATURATED, &small), OK);
     assert_int_equal(small.width, SMALL_SIZE);
     assert_int_equal(small.height, SMALL_SIZE);
     assert_true(small.camera.focal == 5);
-    assert_int_equal(small.picture[0][0], 150);
+    assert_int_equal(pst_code(&small.picture[0], 0), 150);
     /* columns 4 and 5 of the block's four */
-    assert_int_equal(small.picture[0][3 + 2], 452);
+    assert_int_equal(pst_code(&small.picture[0], 3 + 2), 452);
     assert_true(small.mask.data[1] == 1);
     assert_true(small.mask.data[2] == 0);
-    assert_int_equal(small.picture[0][3 * SMALL_SIZE * (SMALL_SIZE - 1)], 150);
+    assert_int_equal(pst_code(&small.picture[0], 3 * SMALL_SIZE * (SMALL_SIZE - 1)), 150);
     pst_capture_free(&small);
     capture_drop(&c);
 }
@@ -46,13 +46,13 @@ static void a_channel_that_holds_a_saturated_pixel_is_saturated(void **state)
     capture_new(&c, SIZE, 1, 3);
     for (int i = 0; i < SIZE * SIZE; i++) {
         c.mask.data[i] = 1;
-        c.picture[0][3 * i + 1] = 800;
+        c.picture[0].wide[3 * i + 1] = 800;
     }
-    c.picture[0][3 * (SIZE + 5)] = 65000;
+    c.picture[0].wide[3 * (SIZE + 5)] = 65000;
     assert_int_equal(pst_shrink(&c, pst_blocks_of(&c, FACTOR), PST_SATURATED, &small), OK);
-    assert_int_equal(small.picture[0][0], 0);
-    assert_int_equal(small.picture[0][3], 65535);
-    assert_int_equal(small.picture[0][4], 800);
+    assert_int_equal(pst_code(&small.picture[0], 0), 0);
+    assert_int_equal(pst_code(&small.picture[0], 3), 65535);
+    assert_int_equal(pst_code(&small.picture[0], 4), 800);
     pst_capture_free(&small);
     capture_drop(&c);
 }

@@ -49,11 +49,11 @@ static void least_squares_turn_what_one_light_reaches_toward_it(void **state)
     for (int i = 0; i < c.width * c.height; i++) {
         int lit = 0, count = 0;
         for (int k = 0; k < c.count; k++)
-            if (c.picture[k][i] > 0) {
+            if (c.picture[k].wide[i] > 0) {
                 lit = k;
                 count++;
             }
-        if (count != 1 || c.picture[lit][i] < 2000) continue;
+        if (count != 1 || c.picture[lit].wide[i] < 2000) continue;
         assert_true(vec3_dot(vec3_of(s.normal.data + 3 * i), vec3_of(c.light[lit].direction)) > 0.99f);
         checked++;
     }
@@ -71,7 +71,7 @@ static void intensities_are_divided_out(void **state)
         float e = 0.3f + 0.7f * (float)(k % 5) / 4;
         c.light[k].intensity[0] = e;
         for (int i = 0; i < c.width * c.height; i++)
-            c.picture[k][i] = (uint16_t)((float)c.picture[k][i] * e + 0.5f);
+            c.picture[k].wide[i] = (uint16_t)((float)c.picture[k].wide[i] * e + 0.5f);
     }
     assert_true(solve_angle(&c, MERLIN_STEREO_LS) < 0.1);
     assert_true(solve_angle(&c, MERLIN_STEREO_ROBUST) < 0.1);
@@ -113,7 +113,7 @@ static void least_squares_does_not_mind_which_channel_is_bright(void **state)
         relief_capture(&r, &c);
         for (int k = 0; k < c.count; k++)
             for (int i = 0; i < c.width * c.height; i++) {
-                uint16_t *code = c.picture[k] + 3 * i, grey = code[0];
+                uint16_t *code = c.picture[k].wide + 3 * i, grey = code[0];
                 for (int ch = 0; ch < 3; ch++)
                     code[ch] = (uint16_t)(80 + (ch == bright ? grey : grey / 10));
             }
@@ -196,7 +196,7 @@ static void a_raised_black_level_is_found(void **state)
     relief_capture(&lambert, &c);
     for (int k = 0; k < c.count; k++)
         for (int i = 0; i < c.width * c.height; i++)
-            c.picture[k][i] = c.picture[k][i] > 2000 ? (uint16_t)(c.picture[k][i] - 2000) : 0;
+            c.picture[k].wide[i] = c.picture[k].wide[i] > 2000 ? (uint16_t)(c.picture[k].wide[i] - 2000) : 0;
     assert_true(solve_angle(&c, MERLIN_STEREO_ROBUST) < 0.7 * solve_angle(&c, MERLIN_STEREO_LS));
     capture_drop(&c);
 }
@@ -223,7 +223,7 @@ static void darkness_and_saturation_leave_numbers(void **state)
         relief_capture(&lambert, &c);
         for (int k = 0; k < c.count; k++)
             for (int i = 0; i < c.width * c.height; i++)
-                c.picture[k][i] = (uint16_t)code;
+                c.picture[k].wide[i] = (uint16_t)code;
         for (size_t m = 0; m < sizeof method / sizeof *method; m++) {
             merlin_surface s;
             if (pst_solve(&c, &(merlin_stereo_params){.method = method[m]}, &s) != OK) continue;
@@ -283,7 +283,7 @@ static void one_black_picture_of_few_is_refused(void **state)
         merlin_capture c;
         relief_capture(&r, &c);
         for (int i = 0; i < c.width * c.height * c.channels; i++)
-            c.picture[2][i] = (uint16_t)(i * 7 % 200); /* noise */
+            c.picture[2].wide[i] = (uint16_t)(i * 7 % 200); /* noise */
         if (count < 8) {
             refused(&c, MERLIN_STEREO_LS, "picture 3");
             refused(&c, MERLIN_STEREO_AUTO, "is black");

@@ -96,10 +96,10 @@ static void few_capture(const few_leds *few, merlin_capture *c)
         int from = LIGHTS / 2 * k / few->count;
         if (few->outer) from -= from % 2;
         c->light[k] = c->light[from];
-        memcpy(c->picture[k], c->picture[from], SIZE * SIZE * sizeof *c->picture[k]);
+        memcpy(c->picture[k].wide, c->picture[from].wide, SIZE * SIZE * sizeof(uint16_t));
     }
     for (int k = few->count; k < LIGHTS; k++)
-        free(c->picture[k]);
+        pst_plane_free(&c->picture[k]);
     c->count = few->count;
 }
 

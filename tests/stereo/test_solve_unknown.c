@@ -7,7 +7,7 @@ static void weaken_lights(merlin_capture *c)
 {
     for (int k = 0; k < c->count; k++)
         for (int i = 0; i < c->width * c->height * c->channels; i++)
-            c->picture[k][i] = (uint16_t)((float)c->picture[k][i] * (0.5f + 0.5f * (float)(k % 3) / 2));
+            c->picture[k].wide[i] = (uint16_t)((float)c->picture[k].wide[i] * (0.5f + 0.5f * (float)(k % 3) / 2));
     c->intensities_known = false;
 }
 
@@ -95,7 +95,7 @@ static void colours_of_lights_are_told_from_those_of_the_object(void **state)
         for (size_t i = 0; i < values; i++) {
             /* the left half without red */
             float paint = i % 3 == 0 && i / 3 % (size_t)c.width < (size_t)c.width / 2 ? 0.05f : 1;
-            c.picture[k][i] = (uint16_t)((float)c.picture[k][i] * paint * tint[k % 3][i % 3]);
+            c.picture[k].wide[i] = (uint16_t)((float)c.picture[k].wide[i] * paint * tint[k % 3][i % 3]);
         }
     weaken_lights(&c);
     merlin_surface s;
@@ -146,7 +146,7 @@ static void dim_some(merlin_capture *c)
 {
     for (int k = 0; k < c->count; k++)
         for (int i = 0; i < c->width * c->height * c->channels; i++)
-            c->picture[k][i] = (uint16_t)((float)c->picture[k][i] * (0.33f + 0.67f * (float)(k * 7 % 5) / 4));
+            c->picture[k].wide[i] = (uint16_t)((float)c->picture[k].wide[i] * (0.33f + 0.67f * (float)(k * 7 % 5) / 4));
 }
 
 /* The sphere's colours as if they were all as bright as its darkest. */
@@ -156,7 +156,7 @@ static void even_out(merlin_capture *c)
     assert_int_equal(pst_solve(c, &(merlin_stereo_params){.method = MERLIN_STEREO_LS}, &s), OK);
     for (int i = 0; i < c->width * c->height * c->channels; i++)
         for (int k = 0; k < c->count && s.albedo.data[i] > 0; k++)
-            c->picture[k][i] = (uint16_t)((float)c->picture[k][i] * 0.17f / s.albedo.data[i]);
+            c->picture[k].wide[i] = (uint16_t)((float)c->picture[k].wide[i] * 0.17f / s.albedo.data[i]);
     merlin_surface_free(&s);
 }
 

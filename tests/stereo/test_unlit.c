@@ -29,12 +29,12 @@ static void ball_from_one_side(merlin_capture *c)
     relief_capture(&r, c);
     for (int k = 0; k < LIGHTS; k++) {
         if (c->light[k].direction[0] < 0.55f) {
-            free(c->picture[k]);
+            pst_plane_free(&c->picture[k]);
             continue;
         }
         for (int i = 0; i < 3 * SIZE * SIZE; i++) {
-            float value = (float)c->picture[k][i] / 65535 * (is_ink(i / 3) ? 0.05f : 1);
-            c->picture[k][i] = relief_code(fmaxf(value + noise * rng_normal(&random), 0));
+            float value = (float)c->picture[k].wide[i] / 65535 * (is_ink(i / 3) ? 0.05f : 1);
+            c->picture[k].wide[i] = relief_code(fmaxf(value + noise * rng_normal(&random), 0));
         }
         c->light[count] = c->light[k];
         c->picture[count++] = c->picture[k];

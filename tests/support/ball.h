@@ -32,7 +32,7 @@ static inline void ball_pixel(merlin_capture *c, int i, int j, float specular)
     c->depth_true.data[pixel] = -at.z;
     memcpy(c->normal_true.data + 3 * pixel, &(float[3]){n.x, n.y, n.z}, 3 * sizeof(float));
     for (int k = 0; k < c->count; k++)
-        c->picture[k][pixel] = relief_code(0.6f * led_radiance(&c->light[k], at, n, specular));
+        c->picture[k].wide[pixel] = relief_code(0.6f * led_radiance(&c->light[k], at, n, specular));
 }
 
 /* Returns the ball's mean distance. position: of each light; lobe: of lights that face the ball. */

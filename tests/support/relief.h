@@ -91,7 +91,7 @@ static inline void capture_new(merlin_capture *c, int size, int lights, int chan
     c->light = calloc((size_t)lights, sizeof *c->light);
     c->picture = calloc((size_t)lights, sizeof *c->picture);
     for (int k = 0; k < lights; k++) {
-        c->picture[k] = calloc((size_t)size * (size_t)size * (size_t)channels, sizeof **c->picture);
+        c->picture[k].wide = calloc((size_t)size * (size_t)size * (size_t)channels, sizeof(uint16_t));
         c->light[k].intensity[0] = c->light[k].intensity[1] = c->light[k].intensity[2] = 1;
     }
 }
@@ -99,7 +99,7 @@ static inline void capture_new(merlin_capture *c, int size, int lights, int chan
 static inline void capture_drop(merlin_capture *c)
 {
     for (int k = 0; k < c->count; k++)
-        free(c->picture[k]);
+        pst_plane_free(&c->picture[k]);
     free(c->picture);
     free(c->light);
     img_free(&c->mask);
@@ -131,7 +131,7 @@ static inline void relief_capture(const relief *r, merlin_capture *c)
                 if (relief_shadowed(r, x, y, l)) continue;
                 for (int ch = 0; ch < r->channels; ch++) {
                     float albedo = (0.5f + 0.2f * sinf(0.2f * x + (float)ch)) * (ch == 1 ? 0.6f : 1);
-                    c->picture[k][at * (size_t)r->channels + (size_t)ch] =
+                    c->picture[k].wide[at * (size_t)r->channels + (size_t)ch] =
                         relief_code(r->exposure * relief_radiance(r, albedo, n, l));
                 }
             }

@@ -47,7 +47,7 @@ static status add_picture(merlin_capture *c, bool shadows)
     float turn = 2.4f * (float)k;
     vec3 to_light = vec3_normalize(vec3_make(cosf(turn), sinf(turn), 1.5f));
     c->light[k] = (merlin_light){.direction = {to_light.x, to_light.y, to_light.z}, .intensity = {1, 1, 1}};
-    c->picture[c->count++] = w.codes;
+    c->picture[c->count++] = (pst_plane){.wide = w.codes};
     return OK;
 }
 
@@ -80,7 +80,7 @@ static status measure(const bench_stereo_options *o, const bench_stereo_report *
 {
     merlin_capture c;
     status s = make_capture(report, out, &c);
-    out->input_bytes = (size_t)c.count * (size_t)c.width * (size_t)c.height * (size_t)c.channels * sizeof *c.picture[0];
+    out->input_bytes = (size_t)c.count * (size_t)c.width * (size_t)c.height * (size_t)c.channels * sizeof(uint16_t);
     bench_reset_resident();
     size_t before = bench_peak_resident();
     if (s == OK) s = bench_time(solve, &c, bench_budget_of(o->quick), &out->seconds);

@@ -27,6 +27,12 @@ static float shading(const uint16_t *pixel, int channels)
     return grey(pixel, channels);
 }
 
+static const uint16_t *pixel_of(const merlin_capture *c, int picture, size_t pixel, uint16_t code[3])
+{
+    const size_t channels = (size_t)c->channels;
+    return pst_codes(&c->picture[picture], pixel * channels, channels, code);
+}
+
 static size_t pixels_of(const merlin_capture *c)
 {
     return (size_t)c->width * (size_t)c->height;
@@ -37,7 +43,7 @@ static status find_brightest(const merlin_capture *c, img *out)
     status s = img_new(out, c->width, c->height, 3);
     for (int i = 0; i < c->count && s == OK; i++)
         for (size_t p = 0; p < 3 * pixels_of(c); p++) {
-            float value = (float)c->picture[i][c->channels == 3 ? p : p / 3] / 65535;
+            float value = (float)pst_code(&c->picture[i], c->channels == 3 ? p : p / 3) / 65535;
             out->data[p] = fmaxf(out->data[p], value);
         }
     return s;
@@ -85,7 +91,7 @@ static status find_darkest(const merlin_capture *c, img *out)
     if (s != OK) return s;
     for (int i = 0; i < c->count; i++)
         for (size_t p = 0; p < 3 * pixels_of(c); p++) {
-            float value = (float)c->picture[i][c->channels == 3 ? p : p / 3] / 65535;
+            float value = (float)pst_code(&c->picture[i], c->channels == 3 ? p : p / 3) / 65535;
             darkest.data[p] = i ? fminf(darkest.data[p], value) : value;
         }
     s = outline_picture(&darkest, out);
@@ -127,9 +133,10 @@ static status find_outlines(const char *folder, const merlin_calibrate_params *o
 /* Finds what every picture contains, such as a window's reflection in the ball; zero for fewer than three pictures. */
 static void find_constant(const merlin_capture *c, img *constant)
 {
+    uint16_t code[3];
     for (int i = 0; i < c->count && c->count > 2; i++)
         for (size_t p = 0; p < pixels_of(c); p++) {
-            float value = grey(c->picture[i] + p * (size_t)c->channels, c->channels);
+            float value = grey(pixel_of(c, i, p, code), c->channels);
             constant->data[p] = i ? fminf(constant->data[p], value) : value;
         }
 }
@@ -139,7 +146,8 @@ static status take_picture(const merlin_capture *c, int i, merlin_ball ball, con
 {
     status s = img_new(out, c->width, c->height, 1);
     for (size_t p = 0; p < pixels_of(c) && s == OK; p++) {
-        const uint16_t *pixel = c->picture[i] + p * (size_t)c->channels;
+        uint16_t code[3];
+        const uint16_t *pixel = pixel_of(c, i, p, code);
         float value = ball == MERLIN_CHROME_BALL ? grey(pixel, c->channels) : shading(pixel, c->channels);
         out->data[p] = ball == MERLIN_MATTE_BALL && value == 1 ? 1 : value - constant->data[p];
     }

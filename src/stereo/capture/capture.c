@@ -39,7 +39,7 @@ static status make_room(merlin_capture *c)
     if (light) c->light = light;
     char **name = realloc(c->name, count * sizeof *name);
     if (name) c->name = name;
-    uint16_t **picture = realloc(c->picture, count * sizeof *picture);
+    pst_plane *picture = realloc(c->picture, count * sizeof *picture);
     if (picture) c->picture = picture;
     return light && name && picture ? OK : fail(MERLIN_NO_MEMORY, "no memory for %zu lights", count);
 }
@@ -62,7 +62,7 @@ status pst_capture_add(merlin_capture *c, const img *picture, const merlin_light
     }
     for (size_t i = 0; i < values; i++)
         codes[i] = code_of(picture->data[i]);
-    c->picture[c->count] = codes;
+    c->picture[c->count] = (pst_plane){.wide = codes};
     c->name[c->count] = name;
     c->light[c->count++] = *light;
     return OK;
@@ -71,7 +71,7 @@ status pst_capture_add(merlin_capture *c, const img *picture, const merlin_light
 void pst_capture_free(merlin_capture *c)
 {
     for (int i = 0; i < c->count; i++) {
-        if (c->picture) free(c->picture[i]);
+        if (c->picture) pst_plane_free(&c->picture[i]);
         if (c->name) free(c->name[i]);
     }
     free(c->picture);

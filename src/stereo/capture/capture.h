@@ -21,6 +21,7 @@
 #include "image/image.h"
 #include "merlin/stereo.h"
 #include "optics/pinhole.h"
+#include "stereo/capture/plane.h"
 
 /* Share of full scale from which on a value counts as saturated. */
 #define PST_SATURATED 0.98f
@@ -30,7 +31,7 @@
  * visible at 65535). */
 struct merlin_capture {
     int width, height, channels, count; /* channels 1 or 3 */
-    uint16_t **picture;                 /* count planes of height × width × channels */
+    pst_plane *picture;                 /* count, each height × width × channels */
     merlin_light *light;                /* count */
     char **name;                        /* count file names, for reports */
     merlin_lighting lighting;

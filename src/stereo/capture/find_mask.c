@@ -157,11 +157,11 @@ static void scan_part(const scanning *job, size_t begin, size_t end)
     const float share = 1 / (65535.0f * 65535.0f * (float)channels * (float)c->count);
     for (int k = 0; k < c->count; k++) {
         for (size_t p = begin; p < end; p++) {
-            const uint16_t *value = c->picture[k] + p * channels;
             float sum = 0;
             for (size_t i = 0; i < channels; i++) {
-                sum += (float)value[i] * (float)value[i];
-                if (value[i] > least) c->mask.data[p] = 1;
+                const uint16_t code = pst_code(&c->picture[k], p * channels + i);
+                sum += (float)code * (float)code;
+                if (code > least) c->mask.data[p] = 1;
             }
             job->level->data[p] += share * sum;
         }

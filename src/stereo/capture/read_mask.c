@@ -45,7 +45,7 @@ static bool is_ever_lit(const merlin_capture *c)
     const size_t pixels = (size_t)c->width * (size_t)c->height, channels = (size_t)c->channels;
     for (int k = 0; k < c->count; k++)
         for (size_t i = 0; i < pixels * channels; i++)
-            if (c->picture[k][i] > 0 && c->mask.data[i / channels] > 0) return true;
+            if (pst_code(&c->picture[k], i) > 0 && c->mask.data[i / channels] > 0) return true;
     return false;
 }
 
@@ -101,10 +101,10 @@ static coverage_box find_kept(const merlin_capture *c)
 static void forget_surroundings(merlin_capture *c)
 {
     const coverage_box k = find_kept(c);
-    const size_t pixel = (size_t)c->channels * sizeof **c->picture, width = (size_t)c->width;
+    const size_t width = (size_t)c->width;
     for (int i = 0; i < c->count; i++) {
-        char *picture = (char *)c->picture[i];
-        size_t from = 0;
+        char *picture = pst_plane_data(&c->picture[i]);
+        size_t from = 0, pixel = (size_t)c->channels * pst_plane_bytes(&c->picture[i]);
         for (int y = k.top; y < k.bottom; y++) {
             const size_t row = (size_t)y * width;
             memory_forget(picture + from * pixel, (row + (size_t)k.left - from) * pixel);

@@ -155,7 +155,7 @@ static void compare_with_ambient(const reading *r, int i, const img *picture)
     r->beside[i] = sums;
 }
 
-static status store(const reading *r, int which, const img *picture, uint16_t **out)
+static status store(const reading *r, int which, const img *picture, pst_plane *out)
 {
     size_t count = img_value_count(picture);
     uint16_t *codes = malloc(count * sizeof *codes);
@@ -169,7 +169,7 @@ static status store(const reading *r, int which, const img *picture, uint16_t **
         float code = left * 65535 + 0.5f;
         codes[i] = value >= 1 || code >= 65535 ? 65535 : code > 0 ? (uint16_t)code : 0;
     }
-    *out = codes;
+    pst_plane_take(codes, count, out);
     return OK;
 }
 
@@ -393,10 +393,8 @@ static status take_pictures(reading *r, merlin_capture *c)
     if (!r->tone) return fail(MERLIN_NO_MEMORY, "no memory for %d pictures", c->count);
     status s = for_pictures(r, take_picture);
     if (s == OK && c->channels == 1 && count_tone(r, TONE_COLOUR) > 0) {
-        for (int i = 0; i < c->count; i++) {
-            free(c->picture[i]);
-            c->picture[i] = NULL;
-        }
+        for (int i = 0; i < c->count; i++)
+            pst_plane_free(&c->picture[i]);
         c->channels = 3;
         s = colour_as(c, &r->ambient);
         if (s == OK) s = for_pictures(r, take_picture);

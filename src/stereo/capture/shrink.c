@@ -33,7 +33,7 @@ static block block_of(const pst_blocks *b, const img *mask, int x, int y)
                    clamp_int(top + b->factor, 0, height)};
 }
 
-static void mean_of(const shrink_job *job, const uint16_t *picture, block b, uint16_t *out)
+static void mean_of(const shrink_job *job, const pst_plane *picture, block b, uint16_t *out)
 {
     const merlin_capture *c = job->from;
     uint64_t sum[3] = {0}, count = 0;
@@ -44,7 +44,7 @@ static void mean_of(const shrink_job *job, const uint16_t *picture, block b, uin
             if (c->mask.data[at] <= 0.5f) continue;
             count++;
             for (int ch = 0; ch < c->channels; ch++) {
-                uint16_t code = picture[at * (size_t)c->channels + (size_t)ch];
+                uint16_t code = pst_code(picture, at * (size_t)c->channels + (size_t)ch);
                 sum[ch] += code;
                 saturated[ch] |= code >= job->high;
             }
@@ -61,8 +61,8 @@ static void shrink_picture(void *context, size_t k)
         for (int x = 0; x < to->width; x++) {
             size_t at = (size_t)y * (size_t)to->width + (size_t)x;
             if (to->mask.data[at] <= 0.5f) continue;
-            mean_of(job, job->from->picture[k], block_of(&job->blocks, &job->from->mask, x, y),
-                    to->picture[k] + at * (size_t)to->channels);
+            mean_of(job, &job->from->picture[k], block_of(&job->blocks, &job->from->mask, x, y),
+                    to->picture[k].wide + at * (size_t)to->channels);
         }
 }
 
@@ -101,8 +101,8 @@ static status allocate(const merlin_capture *c, const pst_blocks *b, merlin_capt
     if (!out->light || !out->picture) return fail(MERLIN_NO_MEMORY, "no memory for %zu small pictures", count);
     memcpy(out->light, c->light, count * sizeof *out->light);
     for (; (size_t)out->count < count; out->count++) {
-        out->picture[out->count] = calloc(samples, sizeof **out->picture);
-        if (!out->picture[out->count]) return fail(MERLIN_NO_MEMORY, "no memory for %zu small pictures", count);
+        out->picture[out->count].wide = calloc(samples, sizeof(uint16_t));
+        if (!out->picture[out->count].wide) return fail(MERLIN_NO_MEMORY, "no memory for %zu small pictures", count);
     }
     return img_new(&out->mask, out->width, out->height, 1);
 }

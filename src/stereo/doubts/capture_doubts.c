@@ -79,18 +79,18 @@ static void check_unit(const merlin_capture *c, warnings *out)
 
 /* ---- pictures ---- */
 
-static uint64_t hash_of(const uint16_t *value, size_t count)
+static uint64_t hash_of(const pst_plane *picture, size_t count)
 {
     uint64_t hash = 14695981039346656037u;
     for (size_t i = 0, step = count / SOME + 1; i < count; i += step)
-        hash = (hash ^ value[i]) * 1099511628211u;
+        hash = (hash ^ pst_code(picture, i)) * 1099511628211u;
     return hash;
 }
 
 static bool are_the_same(const merlin_capture *c, const uint64_t *hash, int j, int k)
 {
     size_t values = (size_t)c->width * (size_t)c->height * (size_t)c->channels;
-    return hash[j] == hash[k] && memcmp(c->picture[j], c->picture[k], values * sizeof **c->picture) == 0;
+    return hash[j] == hash[k] && pst_plane_equals(&c->picture[j], &c->picture[k], values);
 }
 
 static bool may_be_the_same(const merlin_capture *c, int j, int k)
@@ -109,7 +109,7 @@ status pst_check_copies(const merlin_capture *c, warnings *out)
     uint64_t *hash = malloc((size_t)c->count * sizeof *hash);
     if (!hash) return fail(MERLIN_NO_MEMORY, "no memory for %d pictures' sums", c->count);
     for (int k = 0; k < c->count; k++) {
-        hash[k] = hash_of(c->picture[k], values);
+        hash[k] = hash_of(&c->picture[k], values);
         int j = 0;
         while (j < k && (may_be_the_same(c, j, k) || !are_the_same(c, hash, j, k)))
             j++;
@@ -127,7 +127,7 @@ status pst_check_copies(const merlin_capture *c, warnings *out)
 static bool is_saturated(const merlin_capture *c, int k, size_t pixel)
 {
     for (int ch = 0; ch < c->channels; ch++)
-        if (c->picture[k][pixel * (size_t)c->channels + (size_t)ch] >= PST_SATURATED * 65535) return true;
+        if (pst_code(&c->picture[k], pixel * (size_t)c->channels + (size_t)ch) >= PST_SATURATED * 65535) return true;
     return false;
 }
 
@@ -156,8 +156,10 @@ static float brightest_at(const merlin_capture *c, size_t pixel)
     size_t channels = (size_t)c->channels;
     uint16_t most = 0;
     for (int k = 0; k < c->count; k++)
-        for (size_t ch = 0; ch < channels; ch++)
-            if (c->picture[k][pixel * channels + ch] > most) most = c->picture[k][pixel * channels + ch];
+        for (size_t ch = 0; ch < channels; ch++) {
+            const uint16_t code = pst_code(&c->picture[k], pixel * channels + ch);
+            most = code > most ? code : most;
+        }
     return (float)most / 65535;
 }
 

@@ -98,10 +98,11 @@ static double values_at(const pst_light_fit *f, size_t pixel, float *value)
     double square = 0;
     if (c->mask.data[pixel] <= 0.5f) return 0;
     for (int k = 0; k < f->count; k++) {
-        const uint16_t *at = c->picture[k] + pixel * channels;
         float sum = 0;
-        for (size_t ch = 0; ch < channels; ch++)
-            sum = at[ch] >= PST_SATURATED * 65535 ? -HUGE_VALF : sum + (float)at[ch];
+        for (size_t ch = 0; ch < channels; ch++) {
+            const uint16_t code = pst_code(&c->picture[k], pixel * channels + ch);
+            sum = code >= PST_SATURATED * 65535 ? -HUGE_VALF : sum + (float)code;
+        }
         value[k] = sum >= 0 ? sum / (65535 * (float)channels) : -1;
         square += (double)(value[k] * value[k]);
     }

@@ -140,9 +140,12 @@ static uint16_t other_tone(uint16_t code, bool linear)
 /* Converts the pictures as if 8 bits had the other of their two usual meanings, and measures the residual. */
 static status with_other_tones(check *c, bool linear, double *left)
 {
-    for (int k = 0; k < c->small.count; k++)
-        for (size_t i = 0, n = (size_t)c->small.width * (size_t)c->small.height * (size_t)c->small.channels; i < n; i++)
-            c->small.picture[k][i] = other_tone(c->small.picture[k][i], linear);
+    const size_t codes = (size_t)c->small.width * (size_t)c->small.height * (size_t)c->small.channels;
+    for (int k = 0; k < c->small.count; k++) {
+        uint16_t *code = c->small.picture[k].wide;
+        for (size_t i = 0; i < codes; i++)
+            code[i] = other_tone(code[i], linear);
+    }
     return residual_of(&c->small, c->method, left);
 }
 

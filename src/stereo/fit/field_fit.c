@@ -6,45 +6,17 @@
 #include <string.h>
 
 #include "base/inline.h"
+#include "base/memory.h"
 #include "base/number.h"
 #include "base/parallel.h"
 #include "stereo/algebra/matrix3.h"
-#include "stereo/fit/field_neighbours.h"
+#include "stereo/fit/field_job.h"
 #include "stereo/fit/near_lights.h"
 #include "stereo/fit/normal_spread.h"
 #include "stereo/fit/pixel_fit.h"
 
 /* Number of pixels that are gathered together, so that a picture's cache lines serve all of them. */
 enum { BLOCK = 32 };
-
-typedef enum field_task {
-    FIT,
-    REFINE,
-    SEARCH,
-    SECOND,
-    PREDICT,
-    SPREAD,
-    OUTLIERS,
-    ALBEDO,
-    MODEL,
-    FALL_OFF,
-    STORE
-} field_task;
-
-typedef struct fit_job {
-    const pst_field *field;
-    field_task task;
-    pst_around around;     /* neighbours, for spread and outliers */
-    float limit;           /* cost from which on a pixel is searched again */
-    float contradiction;   /* cost of differing from all neighbours, for outliers */
-    pst_shading *next;     /* results that will replace the field's, for spread and outliers */
-    float *weight, *model; /* padded lights per pixel, for model */
-    pst_fall_off *fall;    /* results of fall-off */
-    merlin_surface *out;   /* results of store */
-    float *x, *y, *z;      /* directions of distant lights, padded */
-    float *cost;           /* cost of each pixel */
-    double total;
-} fit_job;
 
 typedef struct run_start {
     bool valid;
@@ -59,16 +31,16 @@ typedef struct gathered {
 ALWAYS_INLINE void gather_picture(const pst_problem *p, int k, const uint32_t *pixel, size_t count, int channels,
                                   float *restrict value, float *restrict usable, size_t stride)
 {
-    const uint16_t *picture = p->capture->picture[k];
+    const pst_plane *picture = &p->capture->picture[k];
     const float high = p->saturation * 65535;
     float share[3];
     for (int ch = 0; ch < channels; ch++)
         share[ch] = 1 / p->light[k].intensity[ch] / (65535 * (float)channels);
     for (size_t j = 0; j < count; j++) {
-        const uint16_t *code = picture + (size_t)pixel[j] * (size_t)channels;
+        const size_t at = (size_t)pixel[j] * (size_t)channels;
         float sum = 0, top = 0;
         for (int ch = 0; ch < channels; ch++) {
-            float v = code[ch];
+            float v = pst_code(picture, at + (size_t)ch);
             sum += v * share[ch];
             top = v > top ? v : top;
         }
@@ -97,7 +69,8 @@ static const pst_lobe *lobe_of(const pst_field *f, const pst_shading *q)
 }
 
 /* Stores the albedo of each channel by the same weights, the residual and the spread. power NULL: distant lights. */
-static void store_pixel(const fit_job *job, size_t at, const pst_lobe_data *d, const pst_shading *q, const float *power)
+static void store_pixel(const pst_field_job *job, size_t at, const pst_lobe_data *d, const pst_shading *q,
+                        const float *power)
 {
     const pst_problem *p = job->field->problem;
     const merlin_capture *c = p->capture;
@@ -110,11 +83,13 @@ static void store_pixel(const fit_job *job, size_t at, const pst_lobe_data *d, c
     float albedo[3] = {0}, energy = 0, fit = 0, residual = 0;
     for (int k = 0; k < c->count; k++) {
         float cosine = fmaxf(n.x * o->x[k] + n.y * o->y[k] + n.z * o->z[k] - kind->terminator, 0);
-        const uint16_t *code = c->picture[k] + at * (size_t)c->channels;
+        const size_t first = at * (size_t)c->channels;
         float wc = w[k] * cosine, r = o->value[k] - model[k], lobe = model[k] - q->albedo * cosine;
         energy += wc * cosine;
         for (int ch = 0; ch < c->channels && wc > 0; ch++)
-            albedo[ch] += wc * ((float)code[ch] / (65535 * p->light[k].intensity[ch] * (power ? power[k] : 1)) - lobe);
+            albedo[ch] += wc * ((float)pst_code(&c->picture[k], first + (size_t)ch) /
+                                    (65535 * p->light[k].intensity[ch] * (power ? power[k] : 1)) -
+                                lobe);
         residual += w[k] * r * r;
         fit += w[k] * model[k] * model[k];
     }
@@ -129,7 +104,7 @@ static void store_pixel(const fit_job *job, size_t at, const pst_lobe_data *d, c
 /* Fits a pixel starting from the previous one, which is usually adjacent: its result is tried first, and accepted if it
  * costs no more than at the start of a run of pixels. Not with few lights, where a wrong surface costs no more and
  * would be copied along the row. */
-static pst_shading fit_after(const fit_job *job, size_t i, const pst_lobe_data *d, run_start *begun)
+static pst_shading fit_after(const pst_field_job *job, size_t i, const pst_lobe_data *d, run_start *begun)
 {
     const pst_field *f = job->field;
     if (begun->valid && f->problem->capture->count >= PST_MANY_LIGHTS) {
@@ -150,27 +125,28 @@ static void try_second(const pst_field *f, size_t i, const pst_lobe_data *d)
     if (found.cost < limit) f->shading[i] = found;
 }
 
-static void try_neighbours(const fit_job *job, size_t i, const pst_lobe_data *d)
+static void try_neighbours(const pst_field_job *job, size_t i, const pst_lobe_data *d)
 {
     const pst_field *f = job->field;
     const pst_shading *start[4];
+    pst_shading *next = &job->next[i - job->first];
     int starts = pst_better_neighbours(&job->around, i, start);
     for (int k = 0; k < starts; k++) {
-        pst_shading trial = pst_lobe_refine(d, lobe_of(f, start[k]), start[k], job->next[i].cost);
-        if (trial.cost < job->next[i].cost) job->next[i] = trial;
+        pst_shading trial = pst_lobe_refine(d, lobe_of(f, start[k]), start[k], next->cost);
+        if (trial.cost < next->cost) *next = trial;
     }
 }
 
 /* Replaces a pixel's result by its neighbours'. Detail of one pixel's size costs much less than the neighbours'
  * surface, and stays. */
-static void replace_outlier(const fit_job *job, size_t i, const pst_lobe_data *d)
+static void replace_outlier(const pst_field_job *job, size_t i, const pst_lobe_data *d)
 {
     const pst_shading *own = &job->field->shading[i];
     pst_majority m;
     if (!pst_majority_against(&job->around, i, &m)) return;
     pst_shading trial = pst_lobe_refine(d, lobe_of(job->field, m.member), m.member, own->cost + job->contradiction);
     float less_strange = pst_strangeness(&m, own->normal) - pst_strangeness(&m, trial.normal);
-    if (trial.cost < own->cost + job->contradiction * less_strange) job->next[i] = trial;
+    if (trial.cost < own->cost + job->contradiction * less_strange) job->next[i - job->first] = trial;
 }
 
 /* Returns the median of the albedos by single observations, of those whose light does not graze the surface. */
@@ -188,41 +164,41 @@ static float albedo_of(const pst_observations *o, vec3 n)
     return albedo[count / 2];
 }
 
-/* Fits the lobe; power NULL: distant lights. */
-static void fit_lobe(const fit_job *job, size_t i, const pst_lobe_data *d, const float *power, run_start *begun)
+/* Fits the lobe, and returns the present cost; power NULL: distant lights. */
+static float fit_lobe(const pst_field_job *job, size_t i, const pst_lobe_data *d, const float *power, run_start *begun)
 {
     const pst_field *f = job->field;
     size_t at = i * (size_t)d->seen.padded;
     pst_shading *own = &f->shading[i];
     switch (job->task) {
-    case FIT:
+    case PST_FIT:
         *own = fit_after(job, i, d, begun);
         break;
-    case REFINE:
+    case PST_REFINE:
         *own = pst_lobe_refine(d, lobe_of(f, own), own, HUGE_VALF);
         break;
-    case SEARCH:
+    case PST_SEARCH:
         *own = pst_lobe_search(d, f->lobe, own);
         break;
-    case SECOND:
+    case PST_SECOND:
         try_second(f, i, d);
         break;
-    case SPREAD:
+    case PST_SPREAD:
         try_neighbours(job, i, d);
         break;
-    case OUTLIERS:
+    case PST_OUTLIERS:
         replace_outlier(job, i, d);
         break;
-    case ALBEDO:
+    case PST_ALBEDO:
         *own = (pst_shading){.normal = own->normal, .albedo = albedo_of(&d->seen, own->normal)};
         break;
-    case MODEL:
+    case PST_MODEL:
         pst_lobe_weigh(d, lobe_of(f, own), own, job->weight + at, job->model + at);
         break;
     default:
         store_pixel(job, f->pixel[i], d, own, power);
     }
-    job->cost[i] = own->cost;
+    return own->cost;
 }
 
 /* Computes near lights, or a near camera's direction, for a pixel's position. Returns the direction to the camera. */
@@ -263,16 +239,17 @@ static pst_fall_off fall_off(const pst_field *f, size_t i, const pst_lobe_data *
 enum { FIT_EFFORT = 4 };
 
 /* Tells whether the task has anything to do at a pixel. */
-static bool concerns(const fit_job *job, size_t i)
+static bool concerns(const pst_field_job *job, size_t i)
 {
     const pst_shading *start[4];
     pst_majority m;
-    if (job->task == SEARCH) return job->field->shading[i].cost > job->limit;
-    if (job->task == OUTLIERS) return pst_majority_against(&job->around, i, &m);
-    return job->task != SPREAD || pst_better_neighbours(&job->around, i, start) > 0;
+    if (job->task == PST_SEARCH) return job->field->shading[i].cost > job->limit;
+    if (job->task == PST_OUTLIERS) return pst_majority_against(&job->around, i, &m);
+    return job->task != PST_SPREAD || pst_better_neighbours(&job->around, i, start) > 0;
 }
 
-static void fit_pixel(const fit_job *job, size_t i, float *value, float *usable, run_start *begun)
+/* Returns the cost. */
+static float fit_pixel(const pst_field_job *job, size_t i, float *value, float *usable, run_start *begun)
 {
     const pst_field *f = job->field;
     pst_near_lights lights;
@@ -286,18 +263,15 @@ static void fit_pixel(const fit_job *job, size_t i, float *value, float *usable,
     if (!f->lobe) {
         float weight[PST_MAX_LIGHTS];
         pst_pixel p = pst_pixel_fit(&o, weight);
-        job->cost[i] = p.cost;
         if (f->b) f->b[i] = p.b;
-    } else if (job->task == PREDICT) {
-        job->cost[i] = pst_lobe_predict(&o, view, f->lobe);
-    } else {
-        pst_lobe_data d;
-        pst_lobe_prepare(&o, view, f->lobe->shadow, &d);
-        if (job->task == FALL_OFF)
-            job->fall[i] = fall_off(f, i, &d, &lights, view);
-        else
-            fit_lobe(job, i, &d, f->depth ? lights.power : NULL, begun);
+        return p.cost;
     }
+    if (job->task == PST_PREDICT) return pst_lobe_predict(&o, view, f->lobe);
+    pst_lobe_data d;
+    pst_lobe_prepare(&o, view, f->lobe->shadow, &d);
+    if (job->task != PST_FALL_OFF) return fit_lobe(job, i, &d, f->depth ? lights.power : NULL, begun);
+    job->fall[i] = fall_off(f, i, &d, &lights, view);
+    return 0;
 }
 
 static bool stopped(const pst_field *f)
@@ -307,10 +281,10 @@ static bool stopped(const pst_field *f)
 
 static void fit_block(void *context, size_t block)
 {
-    const fit_job *job = context;
+    const pst_field_job *job = context;
     const pst_field *f = job->field;
     if (stopped(f)) return;
-    size_t first = block * BLOCK, end = first + BLOCK < f->count ? first + BLOCK : f->count;
+    size_t first = job->first + block * BLOCK, end = first + BLOCK < job->end ? first + BLOCK : job->end;
     size_t stride = (size_t)pst_padded(f->problem->capture->count), wanted[BLOCK], count = 0;
     uint32_t pixel[BLOCK];
     gathered g;
@@ -321,40 +295,48 @@ static void fit_block(void *context, size_t block)
         wanted[count++] = i;
     }
     if (f->problem->effort)
-        pst_effort_add(f->problem->effort, job->task == FIT ? FIT_EFFORT * (end - first) : end - first);
+        pst_effort_add(f->problem->effort, job->task == PST_FIT ? FIT_EFFORT * (end - first) : end - first);
     if (count == 0) return;
     pst_gather(f->problem, pixel, count, g.value, g.usable, stride);
     for (size_t j = 0; j < count; j++)
-        fit_pixel(job, wanted[j], g.value + j * stride, g.usable + j * stride, &begun);
+        job->cost[block] += (double)fit_pixel(job, wanted[j], g.value + j * stride, g.usable + j * stride, &begun);
 }
 
-static status run(fit_job *job)
+status pst_field_run(pst_field_job *job, size_t first, size_t end)
 {
     const pst_field *f = job->field;
-    int count = f->problem->capture->count;
-    size_t padded = (size_t)pst_padded(count);
-    float *memory = calloc(3 * padded + f->count, sizeof *memory);
-    if (!memory) return fail(MERLIN_NO_MEMORY, "no memory to fit %zu pixels", f->count);
-    job->x = memory;
+    const int count = f->problem->capture->count;
+    const size_t padded = (size_t)pst_padded(count), blocks = (end - first + BLOCK - 1) / BLOCK;
+    float *directions = calloc(3 * padded, sizeof *directions);
+    job->cost = calloc(blocks + 1, sizeof *job->cost);
+    status s = directions && job->cost ? OK : fail(MERLIN_NO_MEMORY, "no memory to fit %zu pixels", end - first);
+    job->x = directions;
     job->y = job->x + padded;
     job->z = job->y + padded;
-    job->cost = job->z + padded;
-    for (int k = 0; k < count; k++) {
+    job->first = first;
+    job->end = end;
+    for (int k = 0; k < count && s == OK; k++) {
         job->x[k] = f->problem->light[k].direction[0];
         job->y[k] = f->problem->light[k].direction[1];
         job->z[k] = f->problem->light[k].direction[2];
     }
-    parallel_for((f->count + BLOCK - 1) / BLOCK, fit_block, job);
+    if (s == OK) parallel_for(blocks, fit_block, job);
     job->total = 0;
-    for (size_t i = 0; i < f->count; i++)
-        job->total += (double)job->cost[i];
-    free(memory);
-    return stopped(f) ? fail(MERLIN_STOPPED, "stopped") : OK;
+    for (size_t i = 0; i < blocks && s == OK; i++)
+        job->total += job->cost[i];
+    free(directions);
+    free(job->cost);
+    return s == OK && stopped(f) ? fail(MERLIN_STOPPED, "stopped") : s;
+}
+
+static status run(pst_field_job *job)
+{
+    return pst_field_run(job, 0, job->field->count);
 }
 
 status pst_field_fit(const pst_field *f, double *cost)
 {
-    fit_job job = {.field = f, .task = FIT};
+    pst_field_job job = {.field = f, .task = PST_FIT};
     status s = run(&job);
     *cost = job.total;
     return s;
@@ -362,7 +344,7 @@ status pst_field_fit(const pst_field *f, double *cost)
 
 status pst_field_refine(const pst_field *f, double *cost)
 {
-    fit_job job = {.field = f, .task = REFINE};
+    pst_field_job job = {.field = f, .task = PST_REFINE};
     status s = run(&job);
     *cost = job.total;
     return s;
@@ -370,17 +352,17 @@ status pst_field_refine(const pst_field *f, double *cost)
 
 status pst_field_search(const pst_field *f, float limit)
 {
-    return run(&(fit_job){.field = f, .task = SEARCH, .limit = limit});
+    return run(&(pst_field_job){.field = f, .task = PST_SEARCH, .limit = limit});
 }
 
 status pst_field_try_second(const pst_field *f)
 {
-    return f->second ? run(&(fit_job){.field = f, .task = SECOND}) : OK;
+    return f->second ? run(&(pst_field_job){.field = f, .task = PST_SECOND}) : OK;
 }
 
 status pst_field_predict(const pst_field *f, double *cost)
 {
-    fit_job job = {.field = f, .task = PREDICT};
+    pst_field_job job = {.field = f, .task = PST_PREDICT};
     status s = run(&job);
     *cost = job.total;
     return s;
@@ -390,89 +372,35 @@ status pst_field_given(const pst_field *f, const img *normal)
 {
     for (size_t i = 0; i < f->count; i++)
         f->shading[i].normal = pst_facing(vec3_of(normal->data + 3 * (size_t)f->pixel[i]));
-    return run(&(fit_job){.field = f, .task = ALBEDO});
+    return run(&(pst_field_job){.field = f, .task = PST_ALBEDO});
 }
 
 status pst_field_model(const pst_field *f, float *weight, float *model)
 {
-    return run(&(fit_job){.field = f, .task = MODEL, .weight = weight, .model = model});
+    return run(&(pst_field_job){.field = f, .task = PST_MODEL, .weight = weight, .model = model});
 }
 
 status pst_field_fall_off(const pst_field *f, pst_fall_off *out)
 {
-    return run(&(fit_job){.field = f, .task = FALL_OFF, .fall = out});
+    return run(&(pst_field_job){.field = f, .task = PST_FALL_OFF, .fall = out});
+}
+
+size_t pst_field_band(const pst_field *f)
+{
+    static const size_t many = 1 << 18;
+    const size_t row = (size_t)f->problem->capture->width + 2;
+    return row > many ? row : many;
 }
 
 status pst_field_store(const pst_field *f, merlin_surface *out)
 {
-    return run(&(fit_job){.field = f, .task = STORE, .out = out});
-}
-
-static size_t take(const pst_field *f, const pst_shading *next, bool *news)
-{
-    size_t moved = 0;
-    for (size_t i = 0; i < f->count; i++) {
-        news[i] = next[i].cost < f->shading[i].cost;
-        moved += news[i];
-        f->shading[i] = next[i];
+    const size_t band = pst_field_band(f);
+    status s = OK;
+    for (size_t first = 0; first < f->count && s == OK; first += band) {
+        const size_t end = first + band < f->count ? first + band : f->count;
+        s = pst_field_run(&(pst_field_job){.field = f, .task = PST_STORE, .out = out}, first, end);
+        memory_forget(f->shading + first, (end - first) * sizeof *f->shading);
     }
-    return moved;
-}
-
-int32_t *pst_field_slots(const pst_field *f)
-{
-    const merlin_capture *c = f->problem->capture;
-    size_t size = (size_t)c->width * (size_t)c->height;
-    int32_t *slot = malloc(size * sizeof *slot);
-    if (!slot) return NULL;
-    memset(slot, 0xff, size * sizeof *slot);
-    for (size_t i = 0; i < f->count; i++)
-        slot[f->pixel[i]] = (int32_t)i;
-    return slot;
-}
-
-status pst_field_spread(const pst_field *f, int sweeps)
-{
-    size_t moved = 1;
-    pst_shading *next = malloc(f->count * sizeof *next);
-    int32_t *slot = pst_field_slots(f);
-    bool *news = malloc(f->count * sizeof *news);
-    status s = next && slot && news ? OK : fail(MERLIN_NO_MEMORY, "no memory to fit %zu pixels", f->count);
-    for (int k = 0; s == OK && k < sweeps && moved > 0; k++) {
-        memcpy(next, f->shading, f->count * sizeof *next);
-        s = run(&(fit_job){.field = f, .task = SPREAD, .around = {f, slot, k > 0 ? news : NULL}, .next = next});
-        if (s == OK) moved = take(f, next, news);
-    }
-    free(next);
-    free(slot);
-    free(news);
-    return s;
-}
-
-static float mean_cost(const pst_field *f)
-{
-    double cost = 0;
-    for (size_t i = 0; i < f->count; i++)
-        cost += (double)f->shading[i].cost;
-    return (float)(cost / (double)f->count);
-}
-
-status pst_field_replace_outliers(const pst_field *f, int sweeps)
-{
-    pst_shading *next = malloc(f->count * sizeof *next);
-    int32_t *slot = pst_field_slots(f);
-    status s = next && slot ? OK : fail(MERLIN_NO_MEMORY, "no memory to fit %zu pixels", f->count);
-    for (int k = 0; s == OK && k < sweeps; k++) {
-        memcpy(next, f->shading, f->count * sizeof *next);
-        s = run(&(fit_job){.field = f,
-                           .task = OUTLIERS,
-                           .around = {.field = f, .slot = slot},
-                           .contradiction = PST_FAR_LESS + mean_cost(f),
-                           .next = next});
-        if (s == OK) memcpy(f->shading, next, f->count * sizeof *next);
-    }
-    free(next);
-    free(slot);
     return s;
 }
 

@@ -46,7 +46,8 @@ status pst_field_model(const pst_field *f, float *weight, float *model);
 /* Estimates each pixel's depth from its shading (count); only with near lights. */
 status pst_field_fall_off(const pst_field *f, pst_fall_off *out);
 
-/* Writes normal, albedo and residual into the surface's pictures. */
+/* Writes normal, albedo, residual and spread into the surface's pictures. The field's shading becomes zeros, whose
+ * memory goes back to the system, as these pictures take as much. */
 status pst_field_store(const pst_field *f, merlin_surface *out);
 
 /* Returns the index in the field by position in the picture, -1 outside; malloc'ed, NULL if there is no memory. */

@@ -164,7 +164,7 @@ static double brightest(const merlin_capture *c, size_t pixel)
     for (int k = 0; k < c->count; k++) {
         uint32_t sum = 0;
         for (size_t ch = 0; ch < channels; ch++)
-            sum += c->picture[k][channels * pixel + ch];
+            sum += pst_code(&c->picture[k], channels * pixel + ch);
         top = sum > top ? sum : top;
     }
     return (double)top / (double)channels;

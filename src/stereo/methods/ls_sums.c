@@ -16,7 +16,7 @@ typedef struct ls_light {
     float scale[3];          /* factor from code to radiance under unit intensity */
     float product[PRODUCTS]; /* l lᵀ in the first six; padded to fit a register */
     int32_t bit;             /* bit in its word; 0 for padding at the end */
-    const uint16_t *picture;
+    const pst_plane *picture;
 } ls_light;
 
 struct ls_lights {
@@ -26,7 +26,7 @@ struct ls_lights {
     ls_light at[];
 };
 
-static ls_light make_light(const merlin_light *from, const uint16_t *picture, int index)
+static ls_light make_light(const merlin_light *from, const pst_plane *picture, int index)
 {
     vec3 d = vec3_of(from->direction);
     ls_light l = {.x = d.x, .y = d.y, .z = d.z, .bit = (int32_t)(1u << (index % WORD)), .picture = picture};
@@ -46,9 +46,9 @@ status ls_lights_new(const pst_problem *p, ls_limits limits, ls_lights **out)
     if (!l) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", c->count);
     *l = (ls_lights){.count = filled, .channels = c->channels, .limits = limits};
     for (int i = 0; i < c->count; i++)
-        l->at[i] = make_light(&p->light[i], c->picture[i], i);
+        l->at[i] = make_light(&p->light[i], &c->picture[i], i);
     for (int i = c->count; i < filled; i++)
-        l->at[i] = (ls_light){.picture = c->picture[0]};
+        l->at[i] = (ls_light){.picture = c->picture};
     return OK;
 }
 
@@ -143,11 +143,10 @@ typedef struct places {
     const uint16_t *at[TOGETHER];
 } places;
 
-static inline places places_from(const ls_light *l, size_t value)
+static inline places places_from(places p, size_t value)
 {
-    places p;
     for (int k = 0; k < TOGETHER; k++)
-        p.at[k] = l[k].picture + value;
+        p.at[k] += value;
     return p;
 }
 
@@ -168,43 +167,52 @@ static inline void add_lanes(const ls_lights *all, const ls_light *l, places val
     }
 }
 
-/* Prefetches the values of these pixels in the next pictures, or of the next block. */
-static void fetch(places from, size_t bytes)
-{
-    for (int k = 0; k < TOGETHER; k++)
-        for (size_t b = 0; b < bytes; b += CACHE_LINE)
-            __builtin_prefetch((const char *)from.at[k] + b, 0, 0); /* read once only */
-}
-
 /* Some pictures of a block: the first one's light, and the block's first value. */
 typedef struct portion {
     const ls_light *light;
     size_t value;
 } portion;
 
+/* Prefetches so many values of the next pictures, or of the next block. */
+static void fetch(portion next, size_t values)
+{
+    for (int k = 0; k < TOGETHER; k++) {
+        const pst_plane *picture = next.light[k].picture;
+        const size_t bytes = pst_plane_bytes(picture);
+        const char *from = pst_plane_data(picture) + next.value * bytes;
+        for (size_t b = 0; b < values * bytes; b += CACHE_LINE)
+            __builtin_prefetch(from + b, 0, 0); /* read once only */
+    }
+}
+
 /* Adds the last pixels of a picture, which do not fill all lanes; the rest is zeros, which never count. */
-static void add_rest(const ls_lights *all, portion now, int count, int i, ls_sums *s, uint32_t *lit)
+static void add_rest(const ls_lights *all, const ls_light *l, places values, int count, int i, ls_sums *s,
+                     uint32_t *lit)
 {
     uint16_t copy[TOGETHER][6 * LS_LANES] = {0};
-    places values = places_from(now.light, now.value + (size_t)i * (size_t)all->channels);
+    values = places_from(values, (size_t)i * (size_t)all->channels);
     for (int k = 0; k < TOGETHER; k++) {
         memcpy(copy[k], values.at[k], (size_t)(count - i) * (size_t)all->channels * sizeof copy[k][0]);
         values.at[k] = copy[k];
     }
-    add_lanes(all, now.light, values, s, lit, i);
+    add_lanes(all, l, values, s, lit, i);
 }
 
 /* Adds pictures, and prefetches the next ones meanwhile. */
 static void add_pictures(const ls_lights *all, portion now, portion next, int count, ls_sums *s, uint32_t *lit)
 {
-    int i = 0, channels = all->channels;
-    size_t bytes = 2 * LS_LANES * (size_t)channels * sizeof(uint16_t);
+    const size_t channels = (size_t)all->channels;
+    uint16_t decoded[TOGETHER][3 * LS_BLOCK];
+    places values;
+    int i = 0;
+    for (int k = 0; k < TOGETHER; k++)
+        values.at[k] = pst_codes(now.light[k].picture, now.value, (size_t)count * channels, decoded[k]);
     for (; i + 2 * LS_LANES <= count; i += 2 * LS_LANES) {
-        size_t offset = (size_t)i * (size_t)channels;
-        fetch(places_from(next.light, next.value + offset), bytes);
-        add_lanes(all, now.light, places_from(now.light, now.value + offset), s, lit, i);
+        const size_t offset = (size_t)i * channels;
+        fetch((portion){next.light, next.value + offset}, 2 * LS_LANES * channels);
+        add_lanes(all, now.light, places_from(values, offset), s, lit, i);
     }
-    if (i < count) add_rest(all, now, count, i, s, lit);
+    if (i < count) add_rest(all, now.light, values, count, i, s, lit);
 }
 
 /* ---- matrices ---- */

@@ -72,7 +72,7 @@ static void from_surface(const semi_job *job, double *e)
 static float channel_of(const semi_job *job, size_t i, int light, int channel)
 {
     const merlin_capture *c = job->problem.capture;
-    return c->picture[light][(size_t)job->field.pixel[i] * (size_t)c->channels + (size_t)channel] / 65535.0f;
+    return pst_code(&c->picture[light], (size_t)job->field.pixel[i] * (size_t)c->channels + (size_t)channel) / 65535.0f;
 }
 
 /* Returns a pixel's brightness in a channel relative to its grey one, over all lights. */

@@ -93,7 +93,8 @@ static double mean_seen(const pst_problem *p, int k, const uint32_t *some, size_
     double sum = 0;
     for (size_t i = 0; i < count; i++)
         for (size_t ch = 0; ch < channels; ch++)
-            sum += (double)p->capture->picture[k][some[i] * channels + ch] / (double)p->light[k].intensity[ch];
+            sum +=
+                (double)pst_code(&p->capture->picture[k], some[i] * channels + ch) / (double)p->light[k].intensity[ch];
     return sum / (double)count;
 }
 

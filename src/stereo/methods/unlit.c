@@ -24,7 +24,8 @@ static const float held = 1e4f, drift = 1e-6f;
 static float value_at(const pst_problem *p, int light, size_t pixel, int channel)
 {
     const merlin_capture *c = p->capture;
-    return (float)c->picture[light][pixel * (size_t)c->channels + (size_t)channel] / p->light[light].intensity[channel];
+    return (float)pst_code(&c->picture[light], pixel * (size_t)c->channels + (size_t)channel) /
+           p->light[light].intensity[channel];
 }
 
 /* Returns the sum over channels of a pixel's brightest values in any picture. */

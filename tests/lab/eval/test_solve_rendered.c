@@ -78,7 +78,7 @@ static void inlay(const merlin_capture *from, merlin_capture *to)
     for (int i = 0; i < to->width * to->height; i++) {
         if ((i % to->width / 8 + i / to->width / 8) % 2) continue;
         for (int k = 0; k < to->count; k++)
-            memcpy(to->picture[k] + (size_t)i * channels, from->picture[k] + (size_t)i * channels,
+            memcpy(to->picture[k].wide + (size_t)i * channels, from->picture[k].wide + (size_t)i * channels,
                    channels * sizeof(uint16_t));
     }
 }
@@ -137,7 +137,7 @@ static void unknown_light_is_found_despite_highlights(void **state)
     c.intensities_known = false;
     for (int k = 0; k < c.count; k++)
         for (int i = 0; i < c.width * c.height * c.channels; i++)
-            c.picture[k][i] = (uint16_t)((float)c.picture[k][i] * (0.4f + 0.15f * (float)(k * 7 % 5)));
+            c.picture[k].wide[i] = (uint16_t)((float)c.picture[k].wide[i] * (0.4f + 0.15f * (float)(k * 7 % 5)));
     double semi = solve_angle(&c, MERLIN_STEREO_AUTO);
     print_message("object 9: uncalibrated %.2f, semi %.2f degrees\n", uncalibrated, semi);
     assert_true(semi < robust_bound);

@@ -172,11 +172,11 @@ static merlin_capture make_wide_capture(void)
     c.picture = calloc(1, sizeof *c.picture);
     c.light = calloc(1, sizeof *c.light);
     c.name = calloc(1, sizeof *c.name);
-    c.picture[0] = malloc(sizeof(uint16_t) * 40 * 24);
+    c.picture[0].wide = malloc(sizeof(uint16_t) * 40 * 24);
     assert_int_equal(img_new(&c.mask, 40, 24, 1), OK);
     for (int y = 0; y < 24; y++)
         for (int x = 0; x < 40; x++) {
-            c.picture[0][40 * y + x] = (uint16_t)(100 * x);
+            c.picture[0].wide[40 * y + x] = (uint16_t)(100 * x);
             *img_at(&c.mask, x, y) = x >= 10 && x < 30 && y >= 4 && y < 20;
         }
     return c;
@@ -186,7 +186,7 @@ static void a_wide_capture_is_cut_and_shrunk_with_its_camera(void **state)
 {
     (void)state;
     merlin_capture c = make_wide_capture();
-    c.picture[0][40 * 10 + 20] = UINT16_MAX;
+    c.picture[0].wide[40 * 10 + 20] = UINT16_MAX;
     img photo;
     assert_int_equal(img_new(&photo, 40, 24, 3), OK);
     assert_int_equal(stereo_frame(&c, &photo, 10), OK);
@@ -195,7 +195,7 @@ static void a_wide_capture_is_cut_and_shrunk_with_its_camera(void **state)
     int saturated = 0;
     for (int y = 0; y < 9; y++)
         for (int x = 0; x < 9; x++) {
-            uint16_t code = c.picture[0][9 * y + x];
+            uint16_t code = c.picture[0].wide[9 * y + x];
             saturated += code == UINT16_MAX;
             if (*img_at(&c.mask, x, y) < 0.5f || code == UINT16_MAX) continue;
             /* the picture's value told the column, whose ray must be the same */

@@ -181,8 +181,8 @@ static void add_noise(float share, merlin_capture *c)
     rng r = rng_at(3, 0, 0);
     for (int k = 0; k < c->count; k++) {
         for (int i = 0; i < c->width * c->height * c->channels; i++) {
-            float noisy = (float)c->picture[k][i] + share * 65535 * rng_range(&r, -1, 1);
-            if (c->mask.data[i / c->channels] > 0) c->picture[k][i] = (uint16_t)fminf(fmaxf(noisy, 0), 65535);
+            float noisy = (float)c->picture[k].wide[i] + share * 65535 * rng_range(&r, -1, 1);
+            if (c->mask.data[i / c->channels] > 0) c->picture[k].wide[i] = (uint16_t)fminf(fmaxf(noisy, 0), 65535);
         }
     }
 }
@@ -287,7 +287,7 @@ static void flattened_contrast_makes_no_bowl_of_a_ball(void **state)
     relief_capture(&ball, &c);
     for (int k = 0; k < c.count; k++)
         for (int i = 0; i < c.width * c.height; i++)
-            c.picture[k][i] = (uint16_t)(65535 * powf((float)c.picture[k][i] / 65535, 0.7f));
+            c.picture[k].wide[i] = (uint16_t)(65535 * powf((float)c.picture[k].wide[i] / 65535, 0.7f));
     assert_true(bare_angle(&c) < 8); /* 90 as a bowl */
     capture_drop(&c);
 }
@@ -308,7 +308,7 @@ static void bowl_capture(float distance, merlin_capture *c)
             vec3 lamp = vec3_scale(vec3_make(aside * cosf(turn), aside * sinf(turn), up), distance);
             vec3 to = vec3_sub(lamp, vec3_make(x, y, (0.7f - n.z) / steepest));
             float near = distance / vec3_length(to), seen = fmaxf(vec3_dot(n, vec3_normalize(to)), 0);
-            c->picture[k][i] = (uint16_t)(20000 * (1 + 0.3f * sinf(4 * x)) * near * near * seen);
+            c->picture[k].wide[i] = (uint16_t)(20000 * (1 + 0.3f * sinf(4 * x)) * near * near * seen);
         }
     }
 }
@@ -339,7 +339,7 @@ static void cap_capture(float factor, merlin_capture *c)
             vec3 n = vec3_make(x, y, sqrtf(1 - x * x - y * y));
             c->mask.data[i] = 1;
             memcpy(c->normal_true.data + 3 * i, &(float[3]){n.x, n.y, n.z}, 3 * sizeof(float));
-            c->picture[k][i] = (uint16_t)(strength * fmaxf(vec3_dot(n, vec3_of(c->light[k].direction)), 0));
+            c->picture[k].wide[i] = (uint16_t)(strength * fmaxf(vec3_dot(n, vec3_of(c->light[k].direction)), 0));
         }
     }
 }
@@ -391,7 +391,7 @@ static void a_plane_under_unknown_lights_is_refused(void **state)
         float albedo = rng_range(&r, 0.3f, 1);
         c.mask.data[i] = 1;
         for (int k = 0; k < 10; k++)
-            c.picture[k][i] =
+            c.picture[k].wide[i] =
                 (uint16_t)(50000 * (albedo * vec3_dot(n, relief_light(k, 10)) + rng_range(&r, -0.005f, 0.005f)));
     }
     c.lighting = MERLIN_UNKNOWN_LIGHTS;
@@ -407,7 +407,7 @@ static void a_speck_under_unknown_lights_is_refused(void **state)
     merlin_surface s;
     capture_new(&c, 16, 8, 1);
     for (int i = 0; i < 16 * 16 * 8; i++)
-        c.picture[i % 8][i / 8] = (uint16_t)(20000 + i * 7919 % 30000);
+        c.picture[i % 8].wide[i / 8] = (uint16_t)(20000 + i * 7919 % 30000);
     c.lighting = MERLIN_UNKNOWN_LIGHTS;
     for (int i = 0; i < 4; i++)
         c.mask.data[7 * 16 + 6 + i] = 1;

@@ -211,7 +211,7 @@ static void render_pixel(rendering *r, int i, int j)
         sum = vec3_scale(sum, 1 / (float)paths);
         float rgb[3] = {sum.x, sum.y, sum.z};
         for (size_t ch = 0; ch < channels; ch++)
-            c->picture[k][pixel * channels + ch] = code_of(how, rgb[ch]);
+            c->picture[k].wide[pixel * channels + ch] = code_of(how, rgb[ch]);
     }
 }
 
@@ -252,8 +252,8 @@ static status allocate(const rendered *how, merlin_capture *c)
     if (s == OK && how->albedo) s = img_new(how->albedo, how->size, how->size, 3);
     if (s != OK) return s;
     for (int k = 0; k < how->lights; k++) {
-        c->picture[k] = calloc(values, sizeof **c->picture);
-        if (!c->picture[k]) return fail(MERLIN_NO_MEMORY, "no memory for %d pictures", how->lights);
+        c->picture[k].wide = calloc(values, sizeof(uint16_t));
+        if (!c->picture[k].wide) return fail(MERLIN_NO_MEMORY, "no memory for %d pictures", how->lights);
         c->light[k] = light_of(how, k);
     }
     return OK;

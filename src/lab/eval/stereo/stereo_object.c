@@ -145,7 +145,7 @@ status stereo_object_photo(const merlin_capture *c, int picture, img *photo)
     size_t channels = (size_t)c->channels;
     for (size_t i = 0, n = 3 * (size_t)c->width * (size_t)c->height; i < n; i++) {
         size_t from = channels == 3 ? i : i / 3;
-        photo->data[i] = fminf((float)c->picture[picture][from] / 65535 * most / gain[i % 3], 1);
+        photo->data[i] = fminf((float)pst_code(&c->picture[picture], from) / 65535 * most / gain[i % 3], 1);
     }
     return OK;
 }

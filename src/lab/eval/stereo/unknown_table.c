@@ -49,15 +49,18 @@ static status choose(const merlin_capture *all, int count, merlin_capture *out)
 }
 
 /* Exposes the pictures to shares from `least` to 1, as a camera that is left to itself does. */
-static void dim_pictures(float least, size_t index, merlin_capture *c)
+static status dim_pictures(float least, size_t index, merlin_capture *c)
 {
     const size_t values = (size_t)c->width * (size_t)c->height * (size_t)c->channels;
-    for (int k = 0; k < c->count; k++) {
+    status s = OK;
+    for (int k = 0; k < c->count && s == OK; k++) {
         rng r = rng_at(index, (uint64_t)k, 0);
         const float share = rng_range(&r, least, 1);
-        for (size_t i = 0; i < values; i++)
-            c->picture[k][i] = (uint16_t)(share * (float)c->picture[k][i] + 0.5f);
+        s = pst_plane_widen(&c->picture[k], values);
+        for (size_t i = 0; i < values && s == OK; i++)
+            c->picture[k].wide[i] = (uint16_t)(share * (float)c->picture[k].wide[i] + 0.5f);
     }
+    return s;
 }
 
 /* Maps to compare with the truth; without albedo where a solver's has another meaning. */
@@ -183,7 +186,7 @@ static status measure_object(run *r, const char *path, size_t index, unknown_obj
     stereo_object o;
     status s = path ? stereo_object_read(path, &o) : render(r, index, &o);
     if (s != OK) return s;
-    if (r->options->dim > 0) dim_pictures(r->options->dim, index, &o.capture);
+    if (r->options->dim > 0) s = dim_pictures(r->options->dim, index, &o.capture);
     snprintf(out->name, sizeof out->name, "%s", o.name);
     out->pictures = o.capture.count;
     for (int row = 0; row < UNKNOWN_ROWS; row++) {
