@@ -58,7 +58,7 @@ typedef struct merlin_maps {
     merlin_image mask;           /* 1 channel, coverage in [0, 1] */
     merlin_image photo;          /* 3 channels, the photograph times the mask */
     merlin_image reconstruction; /* 3 channels, the maps under the flash, or under `light` if that is known, exposed as
-                                  * by merlin_relight */
+                                  * by merlin_relight. No data for several photographs, and for maps that were read */
     merlin_image spread;         /* of several photographs: 1 channel, by how many degrees the normals differ with other
                                   * photographs, in [0, 90]: their standard error as far as the photographs tell it, which is
                                   * without the errors that all of them share. No data for one photograph */

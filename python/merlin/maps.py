@@ -64,7 +64,7 @@ class Maps:
     mask: np.ndarray = _map("mask", "H x W, coverage in [0, 1].")
     photo: np.ndarray = _map("photo", "H x W x 3, linear: the photograph times the mask.")
     reconstruction: Optional[np.ndarray] = _map("reconstruction", """H x W x 3, linear: the maps under the photograph's
-        own light, exposed as by relight. None in maps that were loaded.""")
+        own light, exposed as by relight. None in maps of several photographs, and in those that were loaded.""")
     spread: Optional[np.ndarray] = _map("spread", """H x W, degrees, in [0, 90]: by how much the normals differ with other
         photographs, near 0 where they are sure. None for maps of one photograph.""")
 

@@ -4,12 +4,10 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-#include "estimate/relight/maps_surface.h"
-#include "estimate/surface/fuse.h"
 #include "merlin/lights.h"
 #include "photo_stereo/measured_albedo.h"
 #include "photo_stereo/near_refine.h"
-#include "stereo/integrate/integrate.h"
+#include "photo_stereo/refit_depth.h"
 #include "stereo/methods/solve.h"
 
 /* Least number of pictures whose lights a network has compared, and largest one of which the networks' normals stay in
@@ -23,40 +21,6 @@ static vec3 from_lens(const merlin_maps *maps, vec3 v)
     const camera_plane plane = camera_plane_of((camera_slant){maps->slant[0], maps->slant[1]});
     const vec3 x = plane.right, y = plane.up, z = vec3_cross(x, y);
     return vec3_fma(vec3_fma(vec3_scale(x, v.x), v.y, y), v.z, z);
-}
-
-/* Integrates normals as of a lens whose axis goes through the crop's middle, at the mean distance of the present depth.
- */
-static status integrate(surface *part)
-{
-    const int side = part->mask.width;
-    pinhole seen_by = pinhole_of(side, side, (float)surface_lens(part).fov);
-    double sum = 0, count = 0;
-    img depth = {0};
-    for (size_t i = 0; i < img_value_count(&part->mask); i++) {
-        part->mask.data[i] = part->mask.data[i] >= 0.5f;
-        sum += part->mask.data[i] > 0 ? (double)part->depth.data[i] : 0;
-        count += part->mask.data[i] > 0;
-    }
-    seen_by.distance = count > 0 ? (float)(sum / count) : 1;
-    status s = pst_integrate(&part->normal, &part->mask, &seen_by, &(pst_integration){.preserve_edges = false}, &depth);
-    if (s != OK) return s;
-    img_free(&part->depth);
-    part->depth = depth;
-    return OK;
-}
-
-/* Makes depth agree with the new normals: the network's has its shape, so that it is integrated anew; then fused, which
- * knows the true lines of sight. */
-static status refit_depth(merlin_maps *maps)
-{
-    surface part = {0};
-    status s = maps_as_photographed(maps, &part);
-    if (s == OK) s = integrate(&part);
-    if (s == OK) s = fuse_depth(&part.normal, &part.mask, surface_lens(&part), &part.depth);
-    if (s == OK) crop_put(&part.depth, crop_of(maps), &part.mask, &maps->depth);
-    surface_free(&part);
-    return s;
 }
 
 static void take_spread(const img *spread, merlin_maps *maps)
@@ -81,7 +45,6 @@ static void take(const merlin_surface *found, int pictures, merlin_maps *maps)
         float *normal = maps->normal.data + 3 * i;
         if (vec3_dot(n, n) > 0) vec3_put(vec3_normalize(vec3_lerp(n, vec3_of(normal), kept)), normal);
     }
-    img_free(&maps->reconstruction);
     if (found->spread.data) take_spread(&found->spread, maps);
     /* each pixel of fewer pictures is dark in too many of them to tell its albedo better than a network guesses it */
     if (pictures >= PST_FEWEST_UNKNOWN) measured_albedo_take(&found->albedo, maps);
@@ -92,8 +55,7 @@ static void take(const merlin_surface *found, int pictures, merlin_maps *maps)
 
 /* Surface and lights that are expected, in the space of the capture's camera. */
 typedef struct expectation {
-    img mask, normal;
-    const img *depth;
+    img mask;
     vec3 *light, *compared; /* compared: NULL if nobody compared them */
     const float *near;
 } expectation;
@@ -110,7 +72,7 @@ static void turn(const merlin_maps *maps, const vec3 *from, int count, vec3 *to)
 
 static status expect(const merlin_maps *maps, const prior_lights *lights, int count, expectation *out)
 {
-    *out = (expectation){.depth = &maps->depth, .near = lights->near};
+    *out = (expectation){.near = lights->near};
     out->light = malloc(2 * (size_t)count * sizeof *out->light);
     if (!out->light) return fail(MERLIN_NO_MEMORY, "no memory for %d lights", count);
     turn(maps, lights->light, count, out->light);
@@ -119,28 +81,36 @@ static status expect(const merlin_maps *maps, const prior_lights *lights, int co
         turn(maps, lights->compared, count, out->compared);
     }
     status s = img_copy(&out->mask, &maps->mask);
-    if (s == OK) s = img_copy(&out->normal, &maps->normal);
-    for (size_t i = 0; s == OK && i < img_value_count(&out->mask); i++) {
-        float *normal = out->normal.data + 3 * i;
+    for (size_t i = 0; s == OK && i < img_value_count(&out->mask); i++)
         out->mask.data[i] = out->mask.data[i] >= 0.5f;
-        merlin_maps_lens_place(maps, normal, normal);
-    }
     return s;
 }
 
 static void expectation_free(expectation *e)
 {
     img_free(&e->mask);
-    img_free(&e->normal);
     free(e->light);
 }
 
-/* Solves the maps' object as if its lights were unknown. */
-static status solve(const prior_stereo *p, const expectation *e, merlin_surface *out)
+/* Turns the maps' normals into the lens's space, or back, in place: a copy of a large photograph's is much memory. */
+static void turn_normals(merlin_maps *maps, bool back)
+{
+    for (size_t i = 0; i < img_value_count(&maps->mask); i++) {
+        float *normal = maps->normal.data + 3 * i;
+        if (!(maps->mask.data[i] > 0)) continue;
+        if (back)
+            vec3_put(from_lens(maps, vec3_of(normal)), normal);
+        else
+            merlin_maps_lens_place(maps, normal, normal);
+    }
+}
+
+/* Solves the maps' object as if its lights were unknown. maps: with normals in the lens's space. */
+static status solve(const prior_stereo *p, const merlin_maps *maps, const expectation *e, merlin_surface *out)
 {
     merlin_capture c = *p->capture;
-    const pst_expected expected = {.normal = &e->normal,
-                                   .depth = e->depth,
+    const pst_expected expected = {.normal = &maps->normal,
+                                   .depth = &maps->depth,
                                    .light = e->light,
                                    .compared = e->compared,
                                    .near = e->near,
@@ -160,7 +130,11 @@ status prior_stereo_refine(const prior_stereo *p, merlin_maps *maps)
     expectation e;
     merlin_surface found = {0};
     status s = expect(maps, &p->lights, count, &e);
-    if (s == OK) s = solve(p, &e, &found);
+    if (s == OK) {
+        turn_normals(maps, false);
+        s = solve(p, maps, &e, &found);
+        turn_normals(maps, true);
+    }
     const bool taken = s == OK && !found.lights_unsure;
     if (taken) take(&found, count, maps);
     merlin_surface_free(&found); /* before the depth is integrated, as that needs as much memory again */

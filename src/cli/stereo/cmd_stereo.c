@@ -355,8 +355,8 @@ static status write_surface(const request *r, const stereo_files *files, stage_b
     return s;
 }
 
-/* Makes maps of pictures whose lights nobody knows. */
-static status see_together(const request *r, const merlin_capture *capture, const stereo_files *files, stage_bar *bar,
+/* Makes maps of pictures whose lights nobody knows, and frees the capture. */
+static status see_together(const request *r, merlin_capture *capture, const stereo_files *files, stage_bar *bar,
                            const watch *shown, double began)
 {
     universal_request u = {.input = r->input,
@@ -399,10 +399,8 @@ static status solve_and_write(request *r, const stereo_files *files, stage_bar *
         s = capture ? check_no_network(r) : OK;
         if (s == OK) s = capture ? from_capture(r, capture, &surface) : from_photo(r, &surface);
         merlin_capture_free(capture);
-        capture = NULL;
         if (s == OK) s = write_surface(r, files, bar, shown, &surface, began);
     }
-    merlin_capture_free(capture);
     merlin_surface_free(&surface);
     return s;
 }

@@ -83,7 +83,7 @@ static status write(const universal_request *r, merlin_model *model, const merli
     return estimate_write_files(&(estimate_write){&as, r->input, f->folder, f->inputs, NULL}, maps, true, written);
 }
 
-status stereo_universal(const universal_request *r, const merlin_capture *capture)
+status stereo_universal(const universal_request *r, merlin_capture *capture)
 {
     merlin_model *model = NULL;
     merlin_near_network *near = NULL;
@@ -94,6 +94,7 @@ status stereo_universal(const universal_request *r, const merlin_capture *captur
     params.near_network = near;
     if (s == OK) s = merlin_maps_from_capture(model, capture, &params, &maps);
     merlin_near_network_close(near);
+    merlin_capture_free(capture);
     if (s == OK) s = write(r, model, &maps, &written);
     if (s == OK) s = announce(r, &maps, &written, clock_seconds() - r->began);
     merlin_files_free(&written);

@@ -21,7 +21,7 @@ typedef struct universal_request {
     double began; /* when the command began (clock_seconds) */
 } universal_request;
 
-/* Writes the maps' folder and reports it. */
-status stereo_universal(const universal_request *r, const merlin_capture *capture);
+/* Makes maps, frees the capture, as both take much memory, writes the maps' folder and reports it. */
+status stereo_universal(const universal_request *r, merlin_capture *capture);
 
 #endif

@@ -249,7 +249,7 @@ static status resize_spread(work *w)
     return s;
 }
 
-/* Makes the maps at the crop's own resolution, and renders them under the photograph's light. */
+/* Makes the maps at the crop's own resolution, and renders those of one photograph under its light. */
 static status refine(work *w, const merlin_found_light *light, float gain, float white, bool in_environment)
 {
     surface_encode_guide(&w->crop_photo, gain);
@@ -257,7 +257,7 @@ static status refine(work *w, const merlin_found_light *light, float gain, float
     img_free(&w->crop_photo);
     if (s == OK && w->low.spread.data) s = resize_spread(w);
     const reconstruction r = {&w->full, &w->low, &w->low_mask, &w->crop_mask, light, in_environment, white};
-    return s == OK ? reconstruction_render(&r, &w->reconstruction) : s;
+    return s == OK && !w->further.count ? reconstruction_render(&r, &w->reconstruction) : s;
 }
 
 static bool is_whole(const work *w)
@@ -290,7 +290,7 @@ static status place_all(work *w, merlin_maps *maps)
     if (s == OK) s = place(w, &w->full.depth, &maps->depth);
     if (s == OK) s = place(w, &w->full.mask, &maps->mask);
     if (s == OK && w->spread.data) s = place(w, &w->spread, &maps->spread);
-    return s == OK ? place(w, &w->reconstruction, &maps->reconstruction) : s;
+    return s == OK && w->reconstruction.data ? place(w, &w->reconstruction, &maps->reconstruction) : s;
 }
 
 /* Finds the cues for the light in maps of the network's size, before finer normals replace theirs. photo: its size in
@@ -438,10 +438,10 @@ status estimate_with_held(merlin_model *model, merlin_image *photo, merlin_objec
     return estimate_photo(model, &w, object, maps);
 }
 
-status estimate_several(merlin_model *model, const merlin_image *photo, merlin_object *object,
-                        const merlin_params *params, const estimate_further *further, merlin_maps *maps)
+status estimate_several(merlin_model *model, merlin_image *photo, merlin_object *object, const merlin_params *params,
+                        const estimate_further *further, merlin_maps *maps)
 {
-    work w = {.photo = *photo, .params = params, .further = *further};
+    work w = {.photo = *photo, .owned = photo, .params = params, .further = *further};
     return estimate_photo(model, &w, object, maps);
 }
 

@@ -35,8 +35,8 @@ typedef struct estimate_further {
 } estimate_further;
 
 /* Estimates as merlin_estimate does, from several photographs, of which all but the first are in memory one at a time.
- * object is empty afterwards. MERLIN_WRONG_USE unless the model takes several. */
-status estimate_several(merlin_model *model, const merlin_image *photo, merlin_object *object,
-                        const merlin_params *params, const estimate_further *further, merlin_maps *maps);
+ * photo and object are empty afterwards. MERLIN_WRONG_USE unless the model takes several. */
+status estimate_several(merlin_model *model, merlin_image *photo, merlin_object *object, const merlin_params *params,
+                        const estimate_further *further, merlin_maps *maps);
 
 #endif

@@ -29,17 +29,21 @@ static camera_lens lens_of(const merlin_maps *maps)
     return (camera_lens){maps->fov, {maps->slant[0], maps->slant[1]}};
 }
 
+status maps_shape_as_photographed(const merlin_maps *maps, surface *out)
+{
+    const crop_square crop = crop_of(maps);
+    out->lens = lens_of(maps);
+    status s = crop_take(&maps->normal, crop, &maps->mask, &out->normal);
+    if (s == OK) s = crop_take(&maps->depth, crop, &maps->mask, &out->depth);
+    return s == OK ? crop_take(&maps->mask, crop, &maps->mask, &out->mask) : s;
+}
+
 status maps_as_photographed(const merlin_maps *maps, surface *out)
 {
-    const merlin_image *from[] = {&maps->albedo, &maps->normal, &maps->roughness, &maps->depth, &maps->mask};
-    img *to[] = {&out->albedo, &out->normal, &out->roughness, &out->depth, &out->mask};
-    status s = OK;
-    img mask = maps->mask;
-    for (int i = 0; i < 5 && s == OK; i++) {
-        img whole = *from[i];
-        s = crop_take(&whole, crop_of(maps), &mask, to[i]);
-    }
-    out->lens = lens_of(maps);
+    const crop_square crop = crop_of(maps);
+    status s = maps_shape_as_photographed(maps, out);
+    if (s == OK) s = crop_take(&maps->albedo, crop, &maps->mask, &out->albedo);
+    if (s == OK) s = crop_take(&maps->roughness, crop, &maps->mask, &out->roughness);
     if (s == OK) surface_tidy(out); /* the maps may have been edited */
     return s;
 }

@@ -21,9 +21,11 @@ status maps_surface(const merlin_maps *maps, int side, surface *out);
 status maps_albedo(const merlin_maps *maps, int side, img *out);
 
 /* Take the parts separately, for callers that need several: the mask of the crop; the maps at the photograph's own
- * size; and resized to side × side pixels, where mask is that of maps_take_mask, and `hard` makes it 0 or 1. */
+ * size, or of these only normal, depth, mask and lens, as they are; and resized to side × side pixels, where mask is
+ * that of maps_take_mask, and `hard` makes it 0 or 1. */
 status maps_take_mask(const merlin_maps *maps, img *out);
 status maps_as_photographed(const merlin_maps *maps, surface *out);
+status maps_shape_as_photographed(const merlin_maps *maps, surface *out);
 status maps_take_surface(const merlin_maps *maps, const img *mask, int side, bool hard, surface *out);
 
 #endif

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/parallel.h"
+#include "image/coverage.h"
 #include "optics/camera.h"
 
 /* ℓ in pixels, and σ as a slope in pixels: where depth deviates by three pixels' size from the normals' step, it begins
@@ -16,31 +17,38 @@ static const float LEAST_COSINE = 0.1f;
 static const int ITERATIONS = 4;
 static const double RESIDUAL = 1e-6;
 
-enum { ARRAYS = 8, STRIPS = 8 };
+enum { ARRAYS = 6, STRIPS = 8 };
 
-/* The linear system, one value per pixel, rows from the top. Each array has a row of zeros before and after it, so that
- * every pixel has four neighbours. */
+/* The linear system, one value per pixel of the rows that the mask covers, from the top. Each array has a row of zeros
+ * before and after it, so that every pixel has four neighbours. */
 typedef struct fusion {
-    size_t width, count;
+    size_t first, width, count; /* first: the first pixel in the images */
     float *memory;
-    float *right, *down;           /* weight w of the pair with the pixel to the right, and below */
-    float *step_right, *step_down; /* step of that pair by the normals */
-    float *u, *residual, *direction, *product;
+    float *right, *down; /* weight w of the pair with the pixel to the right, and below */
+    /* step of that pair by the normals, which only the start needs; the conjugate gradients' product and direction take
+     * their place */
+    float *step_right, *step_down;
+    float *product, *direction;
+    float *u, *residual;
     float length, turn; /* step length of the conjugate gradients, and their update of the direction */
     double sum[STRIPS];
 } fusion;
 
 static status fusion_new(const img *mask, fusion *f)
 {
-    *f = (fusion){.width = (size_t)mask->width, .count = (size_t)mask->width * (size_t)mask->height};
+    const coverage_box box = coverage_box_of(mask);
+    *f = (fusion){.width = (size_t)mask->width};
+    f->first = f->width * (size_t)box.top;
+    f->count = box.pixels > 0 ? f->width * (size_t)(box.bottom - box.top) : 0;
     size_t length = f->count + 2 * f->width;
     f->memory = calloc(ARRAYS * length, sizeof *f->memory);
     if (!f->memory)
         return fail(MERLIN_NO_MEMORY, "no memory to fuse depth and normals of %dx%d", mask->width, mask->height);
-    float **arrays[ARRAYS] = {&f->right,    &f->down, &f->step_right, &f->step_down,
-                              &f->residual, &f->u,    &f->direction,  &f->product};
+    float **arrays[ARRAYS] = {&f->right, &f->down, &f->step_right, &f->step_down, &f->residual, &f->u};
     for (size_t i = 0; i < ARRAYS; i++)
         *arrays[i] = f->memory + i * length + f->width;
+    f->product = f->step_right;
+    f->direction = f->step_down;
     return OK;
 }
 
@@ -56,10 +64,10 @@ static float step_between(const float *n_i, const float *n_j, vec3 r_i, vec3 r_j
     return 0.5f * logf(cosine(n_i, r_i) * cosine(n_j, r_i) / (cosine(n_i, r_j) * cosine(n_j, r_j)));
 }
 
-/* Adds the pair of pixels i and j to the system. */
-static void join(fusion *f, const img *normal, size_t i, size_t j, vec3 r_i, vec3 r_j, float jump)
+/* Adds the pair of pixels i and j to the system. normal: from the first one on. */
+static void join(fusion *f, const float *normal, size_t i, size_t j, vec3 r_i, vec3 r_j, float jump)
 {
-    float step = step_between(normal->data + 3 * i, normal->data + 3 * j, r_i, r_j);
+    float step = step_between(normal + 3 * i, normal + 3 * j, r_i, r_j);
     float e = (f->u[j] - f->u[i] - step) / jump, weight = 1 / (1 + e * e * e * e);
     if (j == i + 1) {
         f->right[i] = weight;
@@ -79,19 +87,19 @@ typedef struct joining {
 static void join_rows(void *context, size_t begin, size_t end)
 {
     const joining *j = context;
-    const img *mask = j->mask;
     fusion *f = j->f;
-    float jump = JUMP * camera_pixel_size(j->view);
+    const float *mask = j->mask->data + f->first, *normal = j->normal->data + 3 * f->first;
+    const float jump = JUMP * camera_pixel_size(j->view), top = (float)(f->first / f->width);
     for (size_t y = begin; y < end; y++) {
         for (size_t x = 0; x < f->width; x++) {
             size_t i = y * f->width + x;
-            float column = (float)x, row = (float)y;
-            if (mask->data[i] < 0.5f) continue;
+            float column = (float)x, row = top + (float)y;
+            if (mask[i] < 0.5f) continue;
             vec3 ray = camera_point(j->view, column + 0.5f, row + 0.5f, 1);
-            if (x + 1 < f->width && mask->data[i + 1] >= 0.5f)
-                join(f, j->normal, i, i + 1, ray, camera_point(j->view, column + 1.5f, row + 0.5f, 1), jump);
-            if (i + f->width < f->count && mask->data[i + f->width] >= 0.5f)
-                join(f, j->normal, i, i + f->width, ray, camera_point(j->view, column + 0.5f, row + 1.5f, 1), jump);
+            if (x + 1 < f->width && mask[i + 1] >= 0.5f)
+                join(f, normal, i, i + 1, ray, camera_point(j->view, column + 1.5f, row + 0.5f, 1), jump);
+            if (i + f->width < f->count && mask[i + f->width] >= 0.5f)
+                join(f, normal, i, i + f->width, ray, camera_point(j->view, column + 0.5f, row + 1.5f, 1), jump);
         }
     }
 }
@@ -203,14 +211,16 @@ status fuse_depth(const img *normal, const img *mask, camera_lens lens, img *dep
     status s = fusion_new(mask, &f);
     if (s != OK) return s;
     const camera view = camera_through(lens, mask->width, mask->height);
+    const float *inside = mask->data + f.first;
+    float *z = depth->data + f.first;
     for (size_t i = 0; i < f.count; i++)
-        f.u[i] = mask->data[i] >= 0.5f ? logf(depth->data[i]) : 0;
+        f.u[i] = inside[i] >= 0.5f ? logf(z[i]) : 0;
     joining all = {&f, normal, mask, &view};
-    parallel_blocks((size_t)mask->height, join_rows, &all);
+    parallel_blocks(f.count / f.width, join_rows, &all);
     start(&f);
     solve(&f);
     for (size_t i = 0; i < f.count; i++)
-        if (mask->data[i] >= 0.5f) depth->data[i] = expf(f.u[i]);
+        if (inside[i] >= 0.5f) z[i] = expf(f.u[i]);
     free(f.memory);
     return OK;
 }

@@ -13,7 +13,7 @@
  *
  * Up to POISSON_DIRECT unknowns are solved by sparse Cholesky factorization (CHOLMOD); more by conjugate gradients,
  * preconditioned with a W-cycle over blocks of 2 × 2, 4 × 4 and so on, in which parts separated by jumps and slits stay
- * separate, with a factorization of the coarsest level. Memory is about 110 bytes per unknown (12 million: 1.3 GB). If
+ * separate, with a factorization of the coarsest level. Memory is about 94 bytes per unknown (12 million: 1.1 GB). If
  * that does not converge, as on a narrow winding band, all unknowns are factorized, which needs about a kilobyte each.
  */
 #ifndef MERLIN_STEREO_INTEGRATE_POISSON_H

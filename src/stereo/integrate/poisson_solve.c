@@ -15,10 +15,12 @@ static const double MOST_ASTRAY = 100;
 struct poisson_solver {
     const poisson_grid *grid;
     poisson_stack stack;
-    double *b, *r, *z, *p, *product; /* b, and arrays that are needed only if the grid is not factorized itself */
-    double *x;                       /* the caller's array */
-    double length, turn;             /* step length of the conjugate gradients, and their update of the direction */
-    int steps_at_first;              /* number of steps with the stack when it was new; 0: it must be rebuilt */
+    /* right-hand side, which the conjugate gradients make their residual; the other arrays are needed only if the grid
+     * is not factorized itself: the preconditioned residual, in whose place the operator is applied to the direction */
+    double *r, *z, *p;
+    double *x;           /* the caller's array */
+    double length, turn; /* step length of the conjugate gradients, and their update of the direction */
+    int steps_at_first;  /* number of steps with the stack when it was new; 0: it must be rebuilt */
     double sum[POISSON_STRIPS];
 };
 
@@ -28,8 +30,8 @@ status poisson_solver_new(const poisson_grid *g, poisson_solver **out)
     *out = s;
     if (!s) return fail(MERLIN_NO_MEMORY, "no memory to integrate %d pixels", g->count);
     s->grid = g;
-    double **arrays[] = {&s->b, &s->r, &s->z, &s->p, &s->product};
-    size_t wanted = g->count <= POISSON_DIRECT ? 1 : 5, n = (size_t)g->count;
+    double **arrays[] = {&s->r, &s->z, &s->p};
+    size_t wanted = g->count <= POISSON_DIRECT ? 1 : 3, n = (size_t)g->count;
     for (size_t i = 0; i < wanted; i++)
         if (!(*arrays[i] = memory_new(n * sizeof(double)))) {
             poisson_solver_free(s);
@@ -43,11 +45,9 @@ void poisson_solver_free(poisson_solver *s)
 {
     if (!s) return;
     poisson_stack_free(&s->stack);
-    memory_free(s->b);
     memory_free(s->r);
     memory_free(s->z);
     memory_free(s->p);
-    memory_free(s->product);
     free(s);
 }
 
@@ -90,21 +90,21 @@ static double over_strips(poisson_solver *s, strip_work *work)
     return sum;
 }
 
-static double square_of_b(poisson_solver *s, int begin, int end)
+static double square_of_r(poisson_solver *s, int begin, int end)
 {
     double sum = 0;
     for (int i = begin; i < end; i++)
-        sum += s->b[i] * s->b[i];
+        sum += s->r[i] * s->r[i];
     return sum;
 }
 
-/* Computes r = b − A x; returns r·r. */
+/* Computes r = b − A x, where r is b before; returns r·r. */
 static double start(poisson_solver *s, int begin, int end)
 {
     const poisson_level *finest = &s->stack.levels[0];
     double sum = 0;
     for (int i = begin; i < end; i++) {
-        s->r[i] = poisson_residual(finest, i, s->b, s->x);
+        s->r[i] = poisson_residual(finest, i, s->r, s->x);
         s->p[i] = 0;
         sum += s->r[i] * s->r[i];
     }
@@ -126,25 +126,25 @@ static double turn(poisson_solver *s, int begin, int end)
     return 0;
 }
 
-/* Computes product = A p; returns p·product. */
+/* Computes z = A p; returns p·z. */
 static double apply(poisson_solver *s, int begin, int end)
 {
     const poisson_level *finest = &s->stack.levels[0];
     double sum = 0;
     for (int i = begin; i < end; i++) {
-        s->product[i] = poisson_diagonal(finest, i) * s->p[i] - poisson_around(finest, i, s->p);
-        sum += s->p[i] * s->product[i];
+        s->z[i] = poisson_diagonal(finest, i) * s->p[i] - poisson_around(finest, i, s->p);
+        sum += s->p[i] * s->z[i];
     }
     return sum;
 }
 
-/* Updates x and r; returns r·r. */
+/* Updates x and r by z = A p; returns r·r. */
 static double step(poisson_solver *s, int begin, int end)
 {
     double sum = 0;
     for (int i = begin; i < end; i++) {
         s->x[i] += s->length * s->p[i];
-        s->r[i] -= s->length * s->product[i];
+        s->r[i] -= s->length * s->z[i];
         sum += s->r[i] * s->r[i];
     }
     return sum;
@@ -153,7 +153,8 @@ static double step(poisson_solver *s, int begin, int end)
 /* Iterates. *left: squared residual relative to the required one; *steps: number of steps made, at most `most`. */
 static status conjugate_gradients(poisson_solver *s, double tolerance, int most, int *steps, double *left)
 {
-    double enough = tolerance * tolerance * over_strips(s, square_of_b), energy = 0, square = over_strips(s, start);
+    right_hand_side(s->grid, s->r);
+    double enough = tolerance * tolerance * over_strips(s, square_of_r), energy = 0, square = over_strips(s, start);
     if (!(enough > 0)) { /* b is zero */
         memset(s->x, 0, (size_t)s->grid->count * sizeof *s->x);
         square = 0;
@@ -179,9 +180,10 @@ static status factorize(const poisson_solver *s)
 {
     poisson_graph graph;
     poisson_factor *whole = NULL;
+    right_hand_side(s->grid, s->r);
     status result = poisson_graph_of(s->grid, &graph);
     if (result == OK) result = poisson_factor_new(&graph, &whole);
-    if (result == OK) result = poisson_factor_solve(whole, s->b, s->x);
+    if (result == OK) result = poisson_factor_solve(whole, s->r, s->x);
     poisson_factor_free(whole);
     poisson_graph_free(&graph);
     return result;
@@ -209,13 +211,13 @@ static status iterate(poisson_solver *s, double tolerance)
 
 static status solve_directly(poisson_solver *s)
 {
+    right_hand_side(s->grid, s->r);
     status result = build(s);
-    return result == OK ? poisson_factor_solve(s->stack.factor, s->b, s->x) : result;
+    return result == OK ? poisson_factor_solve(s->stack.factor, s->r, s->x) : result;
 }
 
 status poisson_solve(poisson_solver *s, double tolerance, double *x)
 {
     s->x = x;
-    right_hand_side(s->grid, s->b);
     return s->grid->count <= POISSON_DIRECT ? solve_directly(s) : iterate(s, tolerance);
 }
