@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "command/photos.h"
+#include "merlin/image.h"
 #include "merlin/sequences.h"
 
 status maps_folder_take(int argc, char *const *argv, const char **input)
@@ -21,5 +22,9 @@ status maps_folder_check(const char *input, const char *remedy)
                     "%s holds a sequence, whose maps are in a folder of each frame: name one, %s/frame_...", input,
                     input);
     if (file_is_folder(input)) return OK;
+    merlin_image photo = {0};
+    const bool is_photo = merlin_image_read(input, &photo, NULL) == OK;
+    merlin_image_free(&photo);
+    if (!is_photo) return fail(MERLIN_BAD_INPUT, "%s is neither a folder of maps nor a photograph", input);
     return fail(MERLIN_BAD_INPUT, "%s is no folder of maps: merlin estimate %s %s", input, input, remedy);
 }

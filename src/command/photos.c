@@ -51,7 +51,8 @@ char *photo_output_inside(const char *input, const char *name, const char *asked
 const char *photo_without_maps_name(char *input)
 {
     char *slash = strrchr(input, '/');
-    if (strcmp(file_name_of(input), "maps.exr") != 0 || !file_exists(input)) return input;
+    const char *name = file_name_of(input);
+    if ((strcmp(name, "maps.exr") != 0 && strcmp(name, "report.json") != 0) || !file_exists(input)) return input;
     if (!slash) return ".";
     slash[slash == input] = 0;
     return input;

@@ -42,8 +42,8 @@ void photo_list_free(photo_list *list);
 /* Returns the place of results of a photograph or folder: `asked` if that is not NULL, else NAME inside the folder or
  * inside the photograph's own folder, its name without ending + ".merlin"; malloc'ed. */
 char *photo_output_inside(const char *input, const char *name, const char *asked);
-/* Returns input, or for DIR/maps.exr, which is cut, DIR: shells complete the name of the file in a folder of maps, and
- * the folder is meant. */
+/* Returns input, or for DIR/maps.exr and DIR/report.json, which are cut, DIR: shells complete the name of a file in a
+ * folder of maps, and the folder is meant. */
 const char *photo_without_maps_name(char *input);
 /* Takes a command's one photograph or folder from its arguments: "-" is standard input, which has no name and so wants
  * an `output`, and DIR/maps.exr is DIR. *input lives as long as the argument. */

@@ -19,6 +19,7 @@ echo "maps become a page"
 succeeds '^cup.merlin: cup.merlin/viewer.html (.* 1 file, ' view cup.merlin
 present cup.merlin/viewer.html
 succeeds 'out/cup.html' view cup.merlin/maps.exr -o out/cup.html
+succeeds 'out/cup.html' view cup.merlin/report.json -o out/cup.html
 cmp -s cup.merlin/viewer.html out/cup.html || complain "the same maps give another page"
 succeeds '"warnings":\[\],"input":"cup.merlin","output":"out"' view cup.merlin -o out/cup.html --json
 lists_its_files out cup.html
@@ -39,8 +40,10 @@ refuses 2 'ends in .html' view cup.merlin -o cup.merlin/maps.exr
 refuses 2 '--size' view cup.merlin --size 63
 refuses 1 'there is no folder nowhere' view nowhere
 mkdir empty
+echo cup >list.txt
 refuses 1 'no maps.exr in empty' view empty
 refuses 1 'is no folder of maps: merlin estimate' view "$examples/demo.png"
+refuses 1 'list.txt is neither a folder of maps nor a photograph' view list.txt
 refuses 1 'a file of that name is in the way' view cup.merlin -o small.html/cup.html
 mkdir taken.html
 refuses 1 'cannot write ./taken.html: a folder is in the way' view cup.merlin -o taken.html

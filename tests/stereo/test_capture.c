@@ -112,6 +112,36 @@ static void grey_pictures_among_colour_ones_have_equal_channels(void **state)
     }
 }
 
+/* Of grey pictures and a coloured ambient one its luminance is subtracted, and the capture stays grey. */
+static void a_coloured_ambient_picture_is_grey_among_grey_ones(void **state)
+{
+    (void)state;
+    merlin_capture c;
+    const char *const names[] = {"a.png", "b.png", "c.png"};
+    img ambient;
+    write_text("lights.txt", "0 0 1\n0.5 0 0.8\n0 0.5 0.8\n");
+    for (int i = 0; i < 3; i++)
+        write_flat(names[i], 6, 4, 1, 0.2f + 0.1f * (float)i, IMG_LINEAR16);
+    assert_int_equal(img_new(&ambient, 6, 4, 3), OK);
+    for (size_t k = 0; k < img_value_count(&ambient); k++)
+        ambient.data[k] = k % 3 == 1 ? 0.1f : 0;
+    assert_int_equal(img_write_png(scratch_path("ambient.png"), &ambient, IMG_LINEAR16), OK);
+    img_free(&ambient);
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_int_equal(c.channels, 1);
+    for (int i = 0; i < 3; i++)
+        assert_float_equal(pst_code(&c.picture[i], 5) / 65535.0, 0.2 + 0.1 * i - 0.07152, 5e-5);
+    assert_non_null(strstr(warnings_find(&c.noticed, "grey_among_colour")->message, "its luminance is subtracted"));
+    pst_capture_free(&c);
+    write_flat("c.png", 6, 4, 3, 0.4f, IMG_LINEAR16);
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_int_equal(c.channels, 3);
+    assert_float_equal(pst_code(&c.picture[0], 15) / 65535.0, 0.2, 5e-5);
+    assert_float_equal(pst_code(&c.picture[0], 16) / 65535.0, 0.1, 5e-5);
+    assert_non_null(strstr(warnings_find(&c.noticed, "grey_among_colour")->message, "2 are grey"));
+    pst_capture_free(&c);
+}
+
 static void three_float_pictures(const float value[3])
 {
     for (int i = 0; i < 3; i++) {
@@ -439,6 +469,7 @@ int main(void)
         in_scratch(ambient_light_is_subtracted_and_clipping_stays),
         in_scratch(an_ambient_picture_is_darker_than_what_lamps_add_to),
         in_scratch(grey_pictures_among_colour_ones_have_equal_channels),
+        in_scratch(a_coloured_ambient_picture_is_grey_among_grey_ones),
         in_scratch(floats_share_one_scale_below_saturation),
         in_scratch(floats_and_whole_numbers_are_not_mixed),
         in_scratch(an_lp_file_says_which_picture_has_which_light),

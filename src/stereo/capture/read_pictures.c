@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "image/color.h"
 #include "image/metadata/exif.h"
 #include "image/read/read.h"
 #include "stereo/capture/capture_parts.h"
@@ -30,8 +31,8 @@ typedef struct reading {
     const char *folder;
     bool decode;
     watch watch;
-    float scale; /* factor of floats, so that all pictures fit 16 bits */
-    img ambient;
+    float scale;                  /* factor of floats, so that all pictures fit 16 bits */
+    img ambient, ambient_colours; /* the latter only beside a grey one, of which it is the colours */
     char *ambient_path;
     ambient_sums *beside; /* counts for every picture; NULL without an ambient one */
     img *first;           /* first picture, until it is stored */
@@ -126,6 +127,11 @@ static int count_tone(const reading *r, picture_tone tone)
 static void note_grey(const reading *r, merlin_capture *c)
 {
     const int grey = count_tone(r, TONE_GREY);
+    if (r->ambient_colours.data)
+        warnings_add(&c->noticed, "grey_among_colour",
+                     "the ambient picture %s is in colour, the others grey: its luminance is subtracted, which may be "
+                     "more or less than they have of it; give all of one kind",
+                     r->ambient_path);
     if (c->channels > 1 && grey > 0)
         warnings_add(&c->noticed, "grey_among_colour",
                      "of %d pictures %d %s grey, the others in colour: the albedo's colours may be wrong; give all of "
@@ -239,6 +245,23 @@ static status read_first_shape(reading *r, merlin_capture *c)
     return s == OK && r->bits == 32 ? measure_scale(r) : s;
 }
 
+/* Gives the ambient picture the channels of the others, as far as these are known: a coloured one's luminance, and its
+ * colours again where some turn out to have them. */
+static status ambient_as(const merlin_capture *c, reading *r)
+{
+    if (c->channels > 1 && r->ambient_colours.data) {
+        img_free(&r->ambient);
+        r->ambient = r->ambient_colours;
+        r->ambient_colours = (img){0};
+    }
+    if (c->channels >= r->ambient.channels) return colour_as(c, &r->ambient);
+    r->ambient_colours = r->ambient;
+    status s = img_new(&r->ambient, c->width, c->height, 1);
+    for (size_t i = 0; s == OK && i < img_value_count(&r->ambient); i++)
+        r->ambient.data[i] = color_luminance(r->ambient_colours.data + 3 * i);
+    return s;
+}
+
 static status read_ambient(reading *r, const char *asked, const merlin_capture *c)
 {
     char *path = asked ? strdup(asked) : NULL;
@@ -256,8 +279,7 @@ static status read_ambient(reading *r, const char *asked, const merlin_capture *
                      kind_of(bits), kind_of(r->bits));
         for (size_t i = 0; s == OK && i < img_value_count(&r->ambient); i++)
             r->ambient.data[i] *= r->scale;
-        if (r->ambient.channels > c->channels) r->into->channels = r->ambient.channels;
-        if (s == OK) s = colour_as(c, &r->ambient);
+        if (s == OK) s = ambient_as(c, r);
     }
     r->ambient_path = path;
     if (s != OK || !path) return s;
@@ -396,7 +418,7 @@ static status take_pictures(reading *r, merlin_capture *c)
         for (int i = 0; i < c->count; i++)
             pst_plane_free(&c->picture[i]);
         c->channels = 3;
-        s = colour_as(c, &r->ambient);
+        if (r->ambient.data) s = ambient_as(c, r);
         if (s == OK) s = for_pictures(r, take_picture);
     }
     if (s == OK) note_grey(r, c);
@@ -419,6 +441,7 @@ status pst_read_pictures(const char *folder, const merlin_capture_files *options
     if (s == OK) even_out(&r, c);
     free(r.exposure);
     img_free(&r.ambient);
+    img_free(&r.ambient_colours);
     img_free(&first);
     free(r.ambient_path);
     free(r.beside);
