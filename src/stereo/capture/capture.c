@@ -62,7 +62,7 @@ status pst_capture_add(merlin_capture *c, const img *picture, const merlin_light
     }
     for (size_t i = 0; i < values; i++)
         codes[i] = code_of(picture->data[i]);
-    c->picture[c->count] = (pst_plane){.wide = codes};
+    pst_plane_take(codes, values, &c->picture[c->count]);
     c->name[c->count] = name;
     c->light[c->count++] = *light;
     return OK;
