@@ -21,7 +21,8 @@ static const double noticed = 0.02, plainly_less = 0.6;
 typedef struct check {
     merlin_capture small;
     merlin_stereo_method method;
-    double own; /* residual of the small pictures as they were taken */
+    double degrees; /* width of the whole pictures, of which the small ones may show a little more */
+    double own;     /* residual of the model as it is */
 } check;
 
 /* ---- residuals ---- */
@@ -91,16 +92,21 @@ static double degrees_wide(const merlin_capture *c)
     return 2 * atan(0.5 * c->width / (double)c->camera.focal) / (double)DEGREE;
 }
 
+static double focal_of(const check *c, double degrees)
+{
+    return (double)c->small.camera.focal * tan(0.5 * c->degrees * (double)DEGREE) / tan(0.5 * degrees * (double)DEGREE);
+}
+
 static status check_lens(const check *c, double *best, double *degrees)
 {
     static const double tried[] = {12, 18, 25, 35, 45, 60, 75};
     *best = c->own;
-    *degrees = degrees_wide(&c->small);
+    *degrees = c->degrees;
     status s = OK;
     for (size_t i = 0; i < sizeof tried / sizeof *tried && s == OK; i++) {
         double left;
         merlin_capture other = c->small;
-        other.camera.focal = pinhole_of(other.width, other.height, (float)tried[i]).focal;
+        other.camera.focal = (float)focal_of(c, tried[i]);
         s = residual_of(&other, c->method, &left);
         if (left < *best) *best = left, *degrees = tried[i];
     }
@@ -125,7 +131,7 @@ static status check_place(const check *c, warnings *out)
             out, "other_lens",
             "the pictures fit these lights far better as about %.0f degrees wide than %.0f, and normals may be "
             "many degrees off: state by --fov how wide they are",
-            degrees, degrees_wide(&c->small));
+            degrees, c->degrees);
     return OK;
 }
 
@@ -194,9 +200,20 @@ static status check_values(check *c, const merlin_capture *of, warnings *out)
 
 /* ---- the whole ---- */
 
-static status check_all(check *c, const merlin_capture *of, warnings *out)
+/* Measures the residual of the model as it is: that of the small pictures, whose solver may miss the surface that was
+ * found in the large ones, or of these. */
+static status check_own(check *c, const merlin_capture *of, const merlin_surface *found)
 {
+    double whole = HUGE_VAL;
     status s = residual_of(&c->small, c->method, &c->own);
+    if (s == OK && found->residual.data) s = typical_residual(of, found, &whole);
+    c->own = fmin(c->own, whole);
+    return s;
+}
+
+static status check_all(check *c, const merlin_capture *of, const merlin_surface *found, warnings *out)
+{
+    status s = check_own(c, of, found);
     if (s != OK || !(c->own > noticed) || isinf(c->own)) return s;
     size_t before = out->count;
     if (of->lighting == MERLIN_NEAR_LIGHTS) s = check_place(c, out);
@@ -207,11 +224,12 @@ static status check_all(check *c, const merlin_capture *of, warnings *out)
 status pst_check_model(const merlin_capture *c, const merlin_surface *s, warnings *out)
 {
     /* other lights and lenses are tried by the solver of the same lights, without a network */
-    check all = {.method = s->method == MERLIN_STEREO_NFPS ? MERLIN_STEREO_NEAR : s->method};
+    check all = {.method = s->method == MERLIN_STEREO_NFPS ? MERLIN_STEREO_NEAR : s->method,
+                 .degrees = degrees_wide(c)};
     if (c->lighting == MERLIN_UNKNOWN_LIGHTS || c->count < FEWEST) return OK;
     int picture[PICTURES];
     status result = pst_shrink_to(c, SMALL, PICTURES, picture, &all.small);
-    if (result == OK) result = check_all(&all, c, out);
+    if (result == OK) result = check_all(&all, c, s, out);
     pst_capture_free(&all.small);
     return result;
 }

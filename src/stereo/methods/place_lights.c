@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "stereo/capture/shrink.h"
+#include "stereo/methods/solution_cost.h"
 #include "stereo/methods/solve.h"
 
 /* SMALL, VALUES: number of pixels on which the distance is searched, fewer with many pictures, and of their values;
@@ -43,7 +44,7 @@ static void put_lights(const vec3 *about, float distance, bool held, merlin_capt
         vec3_put(vec3_add(about[k], vec3_make(0, 0, -distance)), c->light[k].position);
 }
 
-/* Computes the mean residual of a solution; held: the object's mean distance is that of the lights' centre. */
+/* Computes the cost of a solution; held: the object's mean distance is that of the lights' centre. */
 static status cost_at(search *s, float extent, bool held, double *cost)
 {
     merlin_surface found;
@@ -53,16 +54,10 @@ static status cost_at(search *s, float extent, bool held, double *cost)
     status result =
         pst_solve(&s->small, &(merlin_stereo_params){.method = MERLIN_STEREO_NEAR, .iterations = ROUNDS}, &found);
     if (result != OK) return result;
-    double sum = 0, count = 0;
-    for (size_t i = 0; i < img_value_count(&s->small.mask); i++) {
-        if (s->small.mask.data[i] <= 0.5f) continue;
-        sum += (double)found.residual.data[i];
-        count++;
-    }
-    *cost = sum / count;
+    result = pst_solution_cost(&s->small, &found, cost);
     s->unsure = found.distance_unsure;
     merlin_surface_free(&found);
-    return OK;
+    return result;
 }
 
 /* Refines by halving the steps, on the side of lower cost. */

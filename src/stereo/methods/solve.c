@@ -125,9 +125,8 @@ static status check_lit(const pst_problem *p)
  * of divisions. */
 static const float least_intensity = 1e-15f, largest_intensity = 1e15f;
 
-/* Lists the lights. Intensities that are unknown or to be found count as 1; a light of intensity 0 would cause a
- * division by zero. */
-static status list_lights(const merlin_capture *c, merlin_stereo_method method, merlin_light *light)
+/* Intensities that are unknown or to be found count as 1; a light of intensity 0 would cause a division by zero. */
+status pst_list_lights(const merlin_capture *c, merlin_stereo_method method, merlin_light *light)
 {
     for (int i = 0; i < c->count; i++) {
         light[i] = c->light ? c->light[i] : (merlin_light){0};
@@ -266,7 +265,7 @@ static status solve(const merlin_capture *c, const merlin_stereo_params *params,
     pst_effort effort = {.watch = &shown, .owner = pthread_self()};
     if (shown.tell || shown.stop) p.effort = &effort;
     watch_tell(&shown, "solving", 0);
-    s = list_lights(c, out->method, light);
+    s = pst_list_lights(c, out->method, light);
     if (s == OK) s = check_mask(c);
     if (s == OK && out->method != MERLIN_STEREO_SEMI && out->method != MERLIN_STEREO_UNCALIBRATED) s = check_lit(&p);
     if (s == OK && out->method != MERLIN_STEREO_LS) s = pst_list_pixels(c, &p);

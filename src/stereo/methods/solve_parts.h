@@ -6,6 +6,10 @@
 #include "stereo/fit/problem.h"
 #include "stereo/integrate/stereo_surface.h"
 
+/* Lists a capture's lights as a method needs them. light: as many as pictures. MERLIN_BAD_INPUT for intensities that no
+ * light has. */
+status pst_list_lights(const merlin_capture *c, merlin_stereo_method method, merlin_light *light);
+
 status pst_solve_ls(const pst_problem *p, merlin_surface *out);
 status pst_solve_robust(const pst_problem *p, merlin_surface *out);
 status pst_solve_near(const pst_problem *p, merlin_surface *out);
