@@ -19,9 +19,9 @@
 /* Largest number of pictures that the network sees, evenly chosen, and of its runs on one. */
 enum { SEEN = 32, RUNS = 64 };
 
-/* Mean to which pictures are scaled before their object is searched for, and the share of a picture from which on what
- * is brighter than black is no object. */
-static const double usual_mean = 0.2, whole = 0.9;
+/* Mean to which pictures are scaled before their object is searched for; the share of a picture, and of its edge, from
+ * which on what is brighter than the background has some of that with it. */
+static const double usual_mean = 0.2, whole = 0.9, along_edge = 0.1;
 
 /* The pictures that the network sees. */
 typedef struct seen {
@@ -100,6 +100,23 @@ static double share_inside(const img *mask)
     return (double)inside / (double)count;
 }
 
+static double share_of_edge(const img *mask)
+{
+    const size_t width = (size_t)mask->width, last = width * (size_t)(mask->height - 1);
+    size_t covered = 0;
+    for (size_t x = 0; x < width; x++)
+        covered += (mask->data[x] >= 0.5f) + (mask->data[last + x] >= 0.5f);
+    for (size_t row = 0; row <= last; row += width)
+        covered += (mask->data[row] >= 0.5f) + (mask->data[row + width - 1] >= 0.5f);
+    return (double)covered / (double)(2 * (mask->width + mask->height));
+}
+
+/* Tells whether a mask that was found by brightness tells the object from its background. */
+static bool is_told_by_brightness(const img *mask)
+{
+    return share_inside(mask) <= whole && share_of_edge(mask) <= along_edge;
+}
+
 /* Searches for the object in all pictures. */
 static status search_object(const seen *s, const merlin_hint *hint, merlin_object *out)
 {
@@ -117,7 +134,7 @@ static status find_object(const seen *s, const img *first, const merlin_hint *hi
     const bool hinted = hint->point_count > 0 || hint->box.width > 0;
     if (c->mask.data && !c->mask_found && hinted)
         return fail(MERLIN_WRONG_USE, "the capture has a mask, and a hint where its object is");
-    if (!c->mask.data || (c->mask_found && (hinted || share_inside(&c->mask) > whole)))
+    if (!c->mask.data || (c->mask_found && (hinted || !is_told_by_brightness(&c->mask))))
         return search_object(s, hint, out);
     status st = merlin_object_find(first, &c->mask, NULL, out);
     if (c->mask_found) out->source = MERLIN_MASK_FOUND;

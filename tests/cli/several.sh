@@ -31,6 +31,9 @@ grep -q '"further_light":{"words":"a lamp ' stdout || complain "it does not say 
 succeeds 'next, a lamp .* tells most$' stereo two
 refuses 2 'is for flashes' "$MERLIN" stereo folder --method universal --model merlin-point
 
+refuses 2 '--integrate is for pictures with a list of lights' stereo folder --integrate edges
+refuses 2 '--distance is for pictures with a list of lights' stereo folder --fov 40 --distance 5
+
 echo "near lamps before a known lens are found again by a network"
 "$MERLIN" relight maps --dome 5 --near -o lamps --quiet || complain "no pictures under near lamps"
 mkdir torch

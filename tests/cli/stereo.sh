@@ -83,6 +83,17 @@ export MERLIN_MODEL=$MERLIN_SOURCE_DIR/models/merlin-point.safetensors
 succeeds '"normal_spread_mean_degrees"' stereo disc.hdr --size 64 --json -o photo
 present "${files[@]/#/photo/}" photo/mesh.glb
 
+echo "places about the object are near lights, by the lens that is given, too"
+"$MERLIN" estimate "$MERLIN_SOURCE_DIR/examples/demo.png" --size 64 --views 1 -o cup --quiet || complain "no maps"
+"$MERLIN" relight cup --dome 12 --near -o lamps --quiet || complain "no pictures under near lamps"
+{
+    echo 12
+    grep -v '#' lamps/lights.txt | awk '{ printf "dome_%03d.png %s %s %s\n", NR - 1, $1 * 500, $2 * 500, ($3 + 1) * 500 }'
+} >places.lp
+succeeds '"method":"near"' stereo lamps --lights places.lp --fov 60 --json -o placed
+differ=$("$NORMALS_DIFFER" placed cup)
+awk "BEGIN { exit !($differ < 1.6) }" || complain "its normals are $differ degrees off" # 1.3; by their residuals 2.0
+
 echo "its maps, which are there already"
 spread() { grep -o '"normal_spread_mean_degrees":[0-9.]*' stdout | cut -d: -f2; }
 estimated=$(spread)

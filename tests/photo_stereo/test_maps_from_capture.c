@@ -239,10 +239,9 @@ static void what_it_cannot_take_is_refused(void **state)
     capture_drop(&c);
 }
 
-/* The mask that the reader found by brightness counts only where it leaves a background. */
-static void an_object_is_searched_for_where_all_is_bright(void **state)
+/* bright: number of rows, from the top, that the reader took for the object beside it. */
+static void search_beside(const fixture *f, int bright)
 {
-    const fixture *f = *state;
     const merlin_params p = quick();
     merlin_capture c;
     merlin_maps maps;
@@ -255,7 +254,7 @@ static void an_object_is_searched_for_where_all_is_bright(void **state)
     size_t object = 0, found = 0, both = 0;
     img truth;
     assert_int_equal(img_copy(&truth, &c.mask), OK);
-    for (int i = 0; i < SIZE * SIZE; i++)
+    for (int i = 0; i < bright * SIZE; i++)
         c.mask.data[i] = 1;
     c.mask_found = true;
     assert_int_equal(merlin_maps_from_capture(f->any, &c, &p, &maps), MERLIN_OK);
@@ -270,6 +269,13 @@ static void an_object_is_searched_for_where_all_is_bright(void **state)
     img_free(&truth);
     merlin_maps_free(&maps);
     capture_drop(&c);
+}
+
+/* The mask that the reader found by brightness counts only where it leaves a background all around. */
+static void an_object_is_searched_for_where_all_is_bright(void **state)
+{
+    search_beside(*state, SIZE);
+    search_beside(*state, SIZE / 3);
 }
 
 int main(void)

@@ -355,6 +355,18 @@ static status write_surface(const request *r, const stereo_files *files, stage_b
     return s;
 }
 
+/* Refuses what has no meaning for maps, whose depth is that of a surface about 1 away. */
+static status check_together(const request *r)
+{
+    const char *given = r->solve.integrate ? "--integrate" : r->capture.distance > 0 ? "--distance" : NULL;
+    if (!given) return OK;
+    return fail(
+        MERLIN_WRONG_USE,
+        "%s is for pictures with a list of lights, or by --method uncalibrated: maps of others are of an object "
+        "about 1 away",
+        given);
+}
+
 /* Makes maps of pictures whose lights nobody knows, and frees the capture. */
 static status see_together(const request *r, merlin_capture *capture, const stereo_files *files, stage_bar *bar,
                            const watch *shown, double began)
@@ -372,7 +384,10 @@ static status see_together(const request *r, merlin_capture *capture, const ster
     u.params.progress = shown->tell;
     u.params.progress_context = shown->context;
     u.params.stop = shown->stop;
-    return stereo_universal(&u, capture);
+    status s = check_together(r);
+    if (s == OK) return stereo_universal(&u, capture);
+    merlin_capture_free(capture);
+    return s;
 }
 
 static bool sees_together(const request *r, const merlin_capture *capture)

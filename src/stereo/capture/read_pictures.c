@@ -133,10 +133,11 @@ static void note_grey(const reading *r, merlin_capture *c)
                      "more or less than they have of it; give all of one kind",
                      r->ambient_path);
     if (c->channels > 1 && grey > 0)
-        warnings_add(&c->noticed, "grey_among_colour",
-                     "of %d pictures %d %s grey, the others in colour: the albedo's colours may be wrong; give all of "
-                     "one kind",
-                     c->count, grey, grey == 1 ? "is" : "are");
+        warnings_add(
+            &c->noticed, "grey_among_colour",
+            "of %d pictures %d %s grey, the others in colour: normals may be degrees off, and the albedo's colours "
+            "wrong; give all of one kind",
+            c->count, grey, grey == 1 ? "is" : "are");
 }
 
 /* Returns the factor of the ambient picture in picture i, which may have been exposed otherwise. */

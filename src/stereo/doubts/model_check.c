@@ -182,18 +182,30 @@ static void report_strengths(warnings *out)
                  "--method semi");
 }
 
+/* Measures what is left with the strengths that the pictures fit best, and with equal ones by a solver that heeds
+ * shadows and gloss as well. */
+static status check_strengths(const check *c, double *found, double *equal)
+{
+    status s = residual_of(&c->small, MERLIN_STEREO_SEMI, found);
+    *equal = HUGE_VAL;
+    if (s == OK && c->method == MERLIN_STEREO_LS) s = residual_of(&c->small, MERLIN_STEREO_ROBUST, equal);
+    *equal = fmin(*equal, c->own);
+    return s;
+}
+
 /* Compares tones and strengths, which partly compensate each other, and reports the better one. */
 static status check_values(check *c, const merlin_capture *of, warnings *out)
 {
-    double semi = HUGE_VAL, toned = HUGE_VAL;
+    double semi = HUGE_VAL, equal = c->own, toned = HUGE_VAL;
     status s = OK;
     if (of->lighting == MERLIN_DISTANT_LIGHTS && c->method != MERLIN_STEREO_SEMI && are_of_one_strength(of))
-        s = residual_of(&c->small, MERLIN_STEREO_SEMI, &semi);
+        s = check_strengths(c, &semi, &equal);
     if (s == OK && of->bits == 8) s = with_other_tones(c, of->linear, &toned);
-    if (s != OK || !is_better(c, fmin(semi, toned))) return s;
-    if (toned < semi)
+    if (s != OK) return s;
+    const bool strengths = semi < plainly_less * equal;
+    if (is_better(c, toned) && (toned < semi || !strengths))
         report_tones(of->linear, out);
-    else
+    else if (strengths)
         report_strengths(out);
     return OK;
 }
