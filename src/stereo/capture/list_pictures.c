@@ -57,6 +57,8 @@ static bool may_be_taken(const img_folder_file *file, bool numbered)
     return img_folder_is_photo(file) && !is_beside_the_capture(file->name) && (!numbered || is_numbered(file->name));
 }
 
+static const char *const other_kind = "of another kind than the pictures that are taken";
+
 /* Fails and names the first subfolder with pictures, if there is one. */
 static status refuse_empty(const char *folder, bool numbered, const skipped_files *skipped)
 {
@@ -157,15 +159,31 @@ status pst_find_ambient(const char *folder, const char *picture, char **path)
     return s;
 }
 
+/* Fails as there is another number of lights than of pictures, the first `count` files, and names the others that are
+ * not taken for some. */
+static status refuse_count(const char *folder, bool numbered, const img_folder *f, size_t count, const char *lights,
+                           size_t wanted)
+{
+    skipped_files skipped = {0};
+    char left[256];
+    status s = OK;
+    for (size_t i = count; i < f->count && s == OK; i++)
+        if (may_be_taken(&f->at[i], numbered)) s = img_folder_skip(&f->at[i], other_kind, true, &skipped);
+    skipped_words(&skipped, left, sizeof left);
+    skipped_free(&skipped);
+    if (s != OK) return s;
+    return fail(MERLIN_BAD_INPUT, "%s has %zu %spicture%s, but %s has %zu light%s; each picture needs one%s%s", folder,
+                count, numbered ? "numbered " : "", count == 1 ? "" : "s", lights, wanted, wanted == 1 ? "" : "s",
+                *left ? "; " : "", left);
+}
+
 status pst_take_pictures(const char *folder, bool numbered, const char *lights, size_t wanted, merlin_capture *c)
 {
     img_folder f;
     size_t count;
     status s = list_pictures(folder, numbered, &f, &count);
     if (s != OK) return s;
-    if (lights && count != wanted)
-        s = fail(MERLIN_BAD_INPUT, "%s has %zu %spicture%s, but %s has %zu light%s; each picture needs one", folder,
-                 count, numbered ? "numbered " : "", count == 1 ? "" : "s", lights, wanted, wanted == 1 ? "" : "s");
+    if (lights && count != wanted) s = refuse_count(folder, numbered, &f, count, lights, wanted);
     if (s == OK) s = pst_capture_reserve(c, count);
     for (size_t i = 0; i < count && s == OK; i++)
         s = pst_capture_set_name(c, i, f.at[i].name);
@@ -187,7 +205,7 @@ static const char *reason_of(const img_folder *f, const img_folder_file *file, p
 {
     if (file->is_mask) return "a mask, but another is taken";
     if (taken == RAW && img_folder_is_beside_raw(f, file)) return "beside a raw picture";
-    return class_of(file) == taken ? "not listed" : "of another kind than the pictures that are taken";
+    return class_of(file) == taken ? "not listed" : other_kind;
 }
 
 static picture_class class_taken(const img_folder *f, const merlin_capture *c)
