@@ -295,6 +295,36 @@ static void other_strengths_than_equal_ones_are_told(void **state)
     capture_drop(&c);
 }
 
+static void dim_a_third(merlin_capture *c, float share)
+{
+    for (int k = 0; k < LIGHTS; k += 3)
+        for (int i = 0; i < SIZE * SIZE; i++)
+            c->picture[k].wide[i] = (uint16_t)((float)c->picture[k].wide[i] * share);
+}
+
+/* Lights of other strengths are not those of another list, however much they differ. */
+static void far_weaker_lights_are_told_from_wrong_ones(void **state)
+{
+    (void)state;
+    for (shape what = BALL; what <= BUMPS; what++)
+        for (float share = 0.3f; share < 0.8f; share += 0.2f) {
+            merlin_capture c;
+            take(what, 0.01f, &c);
+            dim_a_third(&c, share);
+            assert_told(&c, "strengths_unequal", "light_intensities.txt");
+            const warnings doubts = doubts_of(&c);
+            assert_null(warnings_find(&doubts, "lights_do_not_fit"));
+            capture_drop(&c);
+        }
+    merlin_capture c;
+    take(PEAR, 0.01f, &c);
+    dim_a_third(&c, 0.5f);
+    reverse(&c, 1, -1);
+    assert_told(&c, "strengths_unequal", "light_intensities.txt");
+    assert_told(&c, "lights_do_not_fit", "they fit with y reversed: it points up");
+    capture_drop(&c);
+}
+
 static void change_tones(merlin_capture *c, float (*tone)(float))
 {
     for (int k = 0; k < LIGHTS; k++)
@@ -410,6 +440,7 @@ int main(void)
         cmocka_unit_test(lights_from_one_side_or_from_behind_are_told),
         cmocka_unit_test(places_in_another_unit_or_behind_the_camera_are_told),
         cmocka_unit_test(other_strengths_than_equal_ones_are_told),
+        cmocka_unit_test(far_weaker_lights_are_told_from_wrong_ones),
         cmocka_unit_test(tones_that_were_taken_for_others_are_told),
         cmocka_unit_test(another_distance_or_lens_is_named),
         cmocka_unit_test(an_inverted_mask_is_told),

@@ -238,7 +238,8 @@ status pst_doubts(const merlin_capture *c, const merlin_surface *s, warnings *ou
 {
     bool known = s->method != MERLIN_STEREO_UNCALIBRATED;
     status result = known ? pst_check_lights(c, s, out) : OK;
-    if (known && result == OK && !warnings_find(out, "lights_do_not_fit")) result = pst_check_model(c, s, out);
+    const bool explained = warnings_find(out, "lights_do_not_fit") || warnings_find(out, "strengths_unequal");
+    if (known && result == OK && !explained) result = pst_check_model(c, s, out);
     if (known && c->lighting == MERLIN_DISTANT_LIGHTS) check_directions(c, out);
     if (known && c->lighting == MERLIN_NEAR_LIGHTS) check_positions(c, out);
     if (known && c->lighting == MERLIN_NEAR_LIGHTS) check_unit(c, out);

@@ -174,7 +174,7 @@ static void report_tones(bool linear, warnings *out)
                        "may be many degrees off: if what wrote them left their values linear, say so by --linear");
 }
 
-static void report_strengths(warnings *out)
+void pst_warn_strengths(warnings *out)
 {
     warnings_add(out, "strengths_unequal",
                  "the pictures fit these lights far better if they are of different strengths, which nothing says they "
@@ -206,7 +206,7 @@ static status check_values(check *c, const merlin_capture *of, warnings *out)
     if (is_better(c, toned) && (toned < semi || !strengths))
         report_tones(of->linear, out);
     else if (strengths)
-        report_strengths(out);
+        pst_warn_strengths(out);
     return OK;
 }
 

@@ -14,4 +14,7 @@
  * found by solving a small version of the pictures again for each. */
 status pst_check_model(const merlin_capture *c, const merlin_surface *s, warnings *out);
 
+/* Adds strengths_unequal: as what fits better is strengths that differ, of which the list says nothing. */
+void pst_warn_strengths(warnings *out);
+
 #endif
