@@ -48,8 +48,9 @@ typedef struct merlin_lamps {
     merlin_warnings warnings; /* lights_behind_camera, lights_list (docs/json.md) */
 } merlin_lamps;
 
-/* Reads a list of lights (docs/light_lists.md) with its intensities: positions, x y z per line; or directions, from an
- * .lp file or as angles, whose lamps are distant or, unless that is 0, at the distance `near` from (0, 0, -1). */
+/* Reads a list of lights (docs/light_lists.md) with its intensities, or those of a file beside it: positions, x y z per
+ * line; or directions, from an .lp file or as angles, whose lamps are distant or, unless that is 0, at the distance
+ * `near` from (0, 0, -1). */
 merlin_status merlin_lamps_read(const char *path, float near, merlin_lamps *out);
 void merlin_lamps_free(merlin_lamps *lamps);
 

@@ -91,6 +91,9 @@ int file_compare_names(const char *a, const char *b);
 /* Lists the plain files of a folder whose names have one of the extensions (file_ends_in_any; NULL means all), each
  * joined to the folder and sorted by file_compare_names. *names and its entries are malloc'ed. */
 status file_list(const char *folder, const char *const *endings, char ***names, size_t *count);
+/* Finds the folder's first file with one of these names, which end with NULL, in any case; *path is NULL if there is
+ * none. Free it. */
+status file_find_named(const char *folder, const char *const *usual, char **path);
 /* Lists the files of a folder and of all folders below it, as file_list does. */
 status file_list_deep(const char *folder, const char *const *endings, char ***names, size_t *count);
 void file_list_free(char **names, size_t count);

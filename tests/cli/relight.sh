@@ -188,6 +188,19 @@ printf '0.5 0.2 -0.4 1 0 0\n' >led.txt
 succeeds led relight disc.merlin --lights led.txt -o led
 relight disc.merlin --light 0.5,0.2,-0.4 --color 1,0,0 -o led_too >stdout || complain "--color failed"
 cmp -s led/relit.png led_too/relit.png || complain "a list's red LED is another than --color's"
+
+echo "intensities beside a list are heeded"
+mkdir strong
+printf '0.5 0.2 -0.4 2 1 3\n0 0 0 0.5 0.5 0.5\n' >whole.txt
+printf '0.5 0.2 -0.4\n0 0 0\n' >strong/lights.txt
+printf '2 1 3\n0.5 0.5 0.5\n' >strong/light_intensities.txt
+succeeds whole relight disc.merlin --lights whole.txt -o whole
+succeeds parts relight disc.merlin --lights strong/lights.txt -o parts
+for i in 0 1; do cmp "whole/relit_00$i.png" "parts/relit_00$i.png" || complain "intensities of their own make another picture"; done
+echo 3 >>strong/light_intensities.txt
+refuses 1 'light_intensities.txt has 3 intensities for 2 lights' relight disc.merlin --lights strong/lights.txt -o none
+cp whole.txt strong/lights.txt
+refuses 1 'both say how strong the lights are' relight disc.merlin --lights strong/lights.txt -o none
 refuses 2 '--matte is of --by brdf' relight disc.merlin --light 0,0,0 --by network --matte
 
 echo "an orbit becomes frames and animations"

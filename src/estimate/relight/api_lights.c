@@ -2,9 +2,12 @@
 /* merlin/lights.h: lamps, their lists, and the estimated light of a photograph. */
 #include <math.h>
 #include <stdlib.h>
+#include <strings.h>
 
 #include "base/api_needs.h"
+#include "base/file.h"
 #include "base/lights/light_list.h"
+#include "base/lights/light_strengths.h"
 #include "base/warnings.h"
 #include "estimate/light/found_light.h"
 #include "estimate/relight/lamp_of.h"
@@ -76,6 +79,42 @@ static void note_list(const char *path, const light_list *list, warnings *notice
     if (list->note[0]) warnings_add(noticed, "lights_list", "%s: %s", path, list->note);
 }
 
+/* Sets the light whose entry has this name. */
+static status find_entry(void *context, const char *name, size_t *light)
+{
+    const light_list *list = context;
+    *light = 0;
+    while (*light < list->count && !(list->name && strcasecmp(list->name[*light], name) == 0))
+        ++*light;
+    return OK;
+}
+
+static status read_strengths_from(const char *strengths, const char *path, light_list *list)
+{
+    if (list->intensity)
+        return fail(MERLIN_BAD_INPUT, "%s and %s both say how strong the lights are; remove one", path, strengths);
+    float(*value)[3] = calloc(list->count, sizeof *value);
+    list->intensity = calloc(list->count, sizeof *list->intensity);
+    status s = value && list->intensity ? OK : fail(MERLIN_NO_MEMORY, "no memory for %zu intensities", list->count);
+    if (s == OK) s = light_strengths_read(strengths, &(light_strengths){list->count, value, find_entry, list, path});
+    for (size_t i = 0; i < list->count && s == OK; i++)
+        list->intensity[i] = vec3_of(value[i]);
+    free(value);
+    return s;
+}
+
+/* Reads a file of intensities beside the list, if there is one. */
+static status read_strengths(const char *path, light_list *list)
+{
+    char *folder = file_folder_of(path), *strengths = NULL;
+    status s =
+        folder ? light_strengths_find(folder, NULL, &strengths) : fail(MERLIN_NO_MEMORY, "no memory for a file name");
+    if (s == OK && strengths) s = read_strengths_from(strengths, path, list);
+    free(folder);
+    free(strengths);
+    return s;
+}
+
 static lamp listed(const light_list *list, size_t i, float near)
 {
     const vec3 direction = light_list_direction(list, i);
@@ -95,8 +134,9 @@ merlin_status merlin_lamps_read(const char *path, float near, merlin_lamps *out)
     light_list list = {0};
     if (s == OK) s = light_list_read(path, &list);
     if (s != OK) return s;
-    out->at = calloc(list.count, sizeof *out->at);
-    if (!out->at) s = fail(MERLIN_NO_MEMORY, "no memory for %zu lights", list.count);
+    s = read_strengths(path, &list);
+    if (s == OK) out->at = calloc(list.count, sizeof *out->at);
+    if (s == OK && !out->at) s = fail(MERLIN_NO_MEMORY, "no memory for %zu lights", list.count);
     for (; s == OK && out->count < list.count; out->count++)
         out->at[out->count] = lamp_public(listed(&list, out->count, near));
     if (s == OK) note_list(path, &list, &out->warnings);

@@ -23,20 +23,13 @@ status pst_find_ambient(const char *folder, const char *picture, char **path);
  * may be NULL), nor known by their names to belong to them. */
 status pst_list_skipped(const char *folder, const char *mask, const char *ambient, merlin_capture *c);
 
-/* Finds the folder's first file with one of these names, which end with NULL, in any case; *path is NULL if there is
- * none. Free it. */
-status pst_find_named(const char *folder, const char *const *usual, char **path);
-/* Finds light_intensities.txt or a file with a similar name in the folder or next to the list of lights (NULL: there is
- * none); *path is NULL if there is none. Free it. MERLIN_BAD_INPUT if there are two. */
-status pst_find_intensities(const char *folder, const char *lights, char **path);
-
-/* Reads what pst_find_intensities finds, if anything: one or three numbers per line, for the capture's lights or, after
+/* Reads what light_strengths_find finds, if anything: one or three numbers per line, for the capture's lights or, after
  * a picture's name, for that one's; or a light in each column. */
 status pst_read_intensities(const char *folder, const char *lights, merlin_capture *c);
 
 /* Sets the lights of a capture that has their pictures' names. */
 status pst_set_lights(const char *path, const light_list *list, const merlin_capture_files *options, merlin_capture *c);
-/* Reads what pst_find_intensities finds, if anything; fails if the list has intensities, too (listed). */
+/* Reads what light_strengths_find finds, if anything; fails if the list has intensities, too (listed). */
 status pst_read_strengths(const char *folder, const char *lights, bool listed, merlin_capture *c);
 /* Reads a list of lights, and assigns them to the folder's pictures. */
 status pst_read_light_list(const char *folder, const char *lights, const merlin_capture_files *options,

@@ -1,28 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "base/file.h"
 #include "stereo/capture/capture_parts.h"
-
-status pst_find_named(const char *folder, const char *const *usual, char **path)
-{
-    char **names;
-    size_t count;
-    *path = NULL;
-    status s = file_list(folder, NULL, &names, &count);
-    if (s != OK) return s;
-    const char *found = NULL;
-    for (size_t k = 0; usual[k] && !found; k++)
-        for (size_t i = 0; i < count; i++) {
-            bool exact = strcmp(file_name_of(names[i]), usual[k]) == 0;
-            if (exact || (!found && strcasecmp(file_name_of(names[i]), usual[k]) == 0)) found = names[i];
-        }
-    if (found && !(*path = strdup(found))) s = fail(MERLIN_NO_MEMORY, "no memory for a file name");
-    file_list_free(names, count);
-    return s;
-}
 
 static status first_with_ending(const char *folder, const char *ending, char **path, size_t *found)
 {

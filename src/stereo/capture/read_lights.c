@@ -7,6 +7,7 @@
 
 #include "base/file.h"
 #include "base/lights/light_list.h"
+#include "base/lights/light_strengths.h"
 #include "stereo/capture/capture_parts.h"
 #include "stereo/capture/match_lights.h"
 
@@ -16,7 +17,7 @@ static status find_lights(const char *folder, const char *asked, char **path)
 {
     size_t found = 0;
     *path = NULL;
-    status s = asked ? OK : pst_find_named(folder, light_list_names, path);
+    status s = asked ? OK : file_find_named(folder, light_list_names, path);
     if (s == OK && !*path) s = pst_find_file(folder, asked, "lights.txt", ".lp", path, &found);
     if (s != OK || found < 2) return s;
     free(*path);
@@ -184,7 +185,7 @@ status pst_read_strengths(const char *folder, const char *lights, bool listed, m
 {
     char *path;
     if (!listed) return pst_read_intensities(folder, lights, c);
-    status s = pst_find_intensities(folder, lights, &path);
+    status s = light_strengths_find(folder, lights, &path);
     if (s == OK && path)
         s = fail(MERLIN_BAD_INPUT, "%s and %s both say how strong the lights are; remove one", lights, path);
     free(path);
