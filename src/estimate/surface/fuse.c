@@ -22,7 +22,7 @@ enum { ARRAYS = 6, STRIPS = 8 };
 /* The linear system, one value per pixel of the rows that the mask covers, from the top. Each array has a row of zeros
  * before and after it, so that every pixel has four neighbours. */
 typedef struct fusion {
-    size_t first, width, count; /* first: the first pixel in the images */
+    size_t top, first, width, count; /* top, first: the first row, and its first pixel, in the images */
     float *memory;
     float *right, *down; /* weight w of the pair with the pixel to the right, and below */
     /* step of that pair by the normals, which only the start needs; the conjugate gradients' product and direction take
@@ -38,7 +38,8 @@ static status fusion_new(const img *mask, fusion *f)
 {
     const coverage_box box = coverage_box_of(mask);
     *f = (fusion){.width = (size_t)mask->width};
-    f->first = f->width * (size_t)box.top;
+    f->top = (size_t)box.top;
+    f->first = f->width * f->top;
     f->count = box.pixels > 0 ? f->width * (size_t)(box.bottom - box.top) : 0;
     size_t length = f->count + 2 * f->width;
     f->memory = calloc(ARRAYS * length, sizeof *f->memory);
@@ -89,7 +90,7 @@ static void join_rows(void *context, size_t begin, size_t end)
     const joining *j = context;
     fusion *f = j->f;
     const float *mask = j->mask->data + f->first, *normal = j->normal->data + 3 * f->first;
-    const float jump = JUMP * camera_pixel_size(j->view), top = (float)(f->first / f->width);
+    const float jump = JUMP * camera_pixel_size(j->view), top = (float)f->top;
     for (size_t y = begin; y < end; y++) {
         for (size_t x = 0; x < f->width; x++) {
             size_t i = y * f->width + x;

@@ -40,8 +40,9 @@ void pst_plane_take(uint16_t *codes, size_t count, pst_plane *out)
     *out = (pst_plane){.wide = codes};
     bool *occurs = calloc(CODES, sizeof *occurs);
     uint8_t *index = malloc(CODES * sizeof *index);
-    if (occurs && index && list_codes(codes, count, occurs)) out->narrow = malloc(count * sizeof *out->narrow);
-    if (out->narrow) {
+    const bool few = occurs && index && list_codes(codes, count, occurs);
+    if (few) out->narrow = malloc(count * sizeof *out->narrow);
+    if (few && out->narrow) {
         memory_prefer_large_pages(out->narrow, count * sizeof *out->narrow);
         make_narrow(codes, count, occurs, index, out);
         free(codes);

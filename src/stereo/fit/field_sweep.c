@@ -53,15 +53,15 @@ static status sweep(pst_field_job *job, held_band held[2], bool *news, size_t *m
 static status held_new(const pst_field *f, held_band held[2])
 {
     const size_t band = pst_field_band(f), most = band < f->count ? band : f->count;
-    for (int k = 0; k < 2; k++)
-        held[k].next = malloc(most * sizeof *held[k].next);
-    return held[0].next && held[1].next ? OK : fail(MERLIN_NO_MEMORY, "no memory to fit %zu pixels", f->count);
+    held[0].next = calloc(2 * most + 1, sizeof *held[0].next);
+    if (!held[0].next) return fail(MERLIN_NO_MEMORY, "no memory to fit %zu pixels", f->count);
+    held[1].next = held[0].next + most;
+    return OK;
 }
 
 static void held_free(held_band held[2])
 {
     free(held[0].next);
-    free(held[1].next);
 }
 
 int32_t *pst_field_slots(const pst_field *f)
