@@ -84,6 +84,8 @@ static const struct run {
     {"merlin-any/08-256", 0x931749a8ca7c454c},
     {"merlin-any/09-128", 0x1de0d96206db84d7},
     {"merlin-any/10-256", 0x8465c7b5d22c5a02},
+    {"merlin-any/11-128", 0xfe26dda258a028c9},
+    {"merlin-any/12-256", 0xedec69fba1d8cd03},
 };
 enum { RUNS = sizeof runs / sizeof *runs };
 
