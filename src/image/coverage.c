@@ -29,3 +29,19 @@ coverage_box coverage_box_of(const img *mask)
         }
     return b;
 }
+
+static size_t covered(const img *mask, int x, int y, int step_x, int step_y, int count)
+{
+    size_t sum = 0;
+    for (int i = 0; i < count; i++)
+        sum += *img_at(mask, x + i * step_x, y + i * step_y) >= 0.5f;
+    return sum;
+}
+
+float coverage_of_edge(const img *mask)
+{
+    const int w = mask->width, h = mask->height;
+    const size_t edge = covered(mask, 0, 0, 1, 0, w) + covered(mask, 0, h - 1, 1, 0, w) + covered(mask, 0, 0, 0, 1, h) +
+                        covered(mask, w - 1, 0, 0, 1, h);
+    return (float)edge / (float)(2 * (w + h));
+}

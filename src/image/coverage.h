@@ -23,4 +23,7 @@ typedef struct coverage_box {
 } coverage_box;
 coverage_box coverage_box_of(const img *mask);
 
+/* Returns the share of the picture's edge where half or more is covered. */
+float coverage_of_edge(const img *mask);
+
 #endif

@@ -8,6 +8,7 @@
 #include "base/api_needs.h"
 #include "estimate/photo/estimate.h"
 #include "estimate/photo/model_pair.h"
+#include "image/coverage.h"
 #include "merlin/lights.h"
 #include "photo_stereo/align_pictures.h"
 #include "photo_stereo/further_light.h"
@@ -92,29 +93,11 @@ static status mean_picture(const seen *s, img *out)
     return st;
 }
 
-static double share_inside(const img *mask)
-{
-    size_t inside = 0, count = img_value_count(mask);
-    for (size_t i = 0; i < count; i++)
-        inside += mask->data[i] >= 0.5f;
-    return (double)inside / (double)count;
-}
-
-static double share_of_edge(const img *mask)
-{
-    const size_t width = (size_t)mask->width, last = width * (size_t)(mask->height - 1);
-    size_t covered = 0;
-    for (size_t x = 0; x < width; x++)
-        covered += (mask->data[x] >= 0.5f) + (mask->data[last + x] >= 0.5f);
-    for (size_t row = 0; row <= last; row += width)
-        covered += (mask->data[row] >= 0.5f) + (mask->data[row + width - 1] >= 0.5f);
-    return (double)covered / (double)(2 * (mask->width + mask->height));
-}
-
 /* Tells whether a mask that was found by brightness tells the object from its background. */
 static bool is_told_by_brightness(const img *mask)
 {
-    return share_inside(mask) <= whole && share_of_edge(mask) <= along_edge;
+    const double inside = (double)coverage_box_of(mask).pixels / (double)img_value_count(mask);
+    return inside <= whole && (double)coverage_of_edge(mask) <= along_edge;
 }
 
 /* Searches for the object in all pictures. */

@@ -151,6 +151,11 @@ status light_strengths_read(const char *path, const light_strengths *of)
     return s;
 }
 
+static status refuse_two(const char *one, const char *other)
+{
+    return fail(MERLIN_BAD_INPUT, "%s and %s both say how strong the lights are; remove one", one, other);
+}
+
 /* Finds a folder's file of intensities; fails if *path is set already, as both would state the same lights. */
 static status find_in(const char *folder, char **path)
 {
@@ -164,7 +169,7 @@ static status find_in(const char *folder, char **path)
             s = file_find_named(folder, (const char *const[]){name, NULL}, &found);
             if (s != OK || !found) continue;
             if (*path)
-                s = fail(MERLIN_BAD_INPUT, "%s and %s both say how strong the lights are; remove one", *path, found);
+                s = refuse_two(*path, found);
             else
                 *path = found;
             if (s != OK) free(found);
@@ -172,7 +177,7 @@ static status find_in(const char *folder, char **path)
     return s;
 }
 
-status light_strengths_find(const char *folder, const char *lights, char **path)
+status light_strengths_find(const char *folder, const char *lights, bool listed, char **path)
 {
     char *beside = lights ? file_folder_of(lights) : NULL;
     status s = lights && !beside ? fail(MERLIN_NO_MEMORY, "no memory for a file name") : OK;
@@ -180,6 +185,7 @@ status light_strengths_find(const char *folder, const char *lights, char **path)
     if (s == OK) s = find_in(folder, path);
     if (s == OK && beside && !file_is_same(folder, beside)) s = find_in(beside, path);
     free(beside);
+    if (s == OK && listed && *path) s = refuse_two(lights, *path);
     if (s == OK) return OK;
     free(*path);
     *path = NULL;

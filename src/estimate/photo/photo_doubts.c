@@ -12,6 +12,7 @@
 #include "estimate/object/mask.h"
 #include "estimate/surface/exposure.h"
 #include "image/color.h"
+#include "image/coverage.h"
 #include "image/metadata/exif.h"
 #include "image/read/read.h"
 #include "merlin/merlin.h"
@@ -24,41 +25,21 @@ enum { SMALL = 2500, FEW_SHADES = 48, PHOTOGRAPHS_ENOUGH = 7 };
 
 /* ---- the mask ---- */
 
-typedef struct coverage {
-    size_t object, all;
-    float cut; /* share of the photograph's edge that is object */
-} coverage;
-
-static size_t covered(const img *mask, int x, int y, int step_x, int step_y, int count)
+static size_t object_pixels(const merlin_maps *maps)
 {
-    size_t sum = 0;
-    for (int i = 0; i < count; i++)
-        sum += *img_at(mask, x + i * step_x, y + i * step_y) >= 0.5f;
-    return sum;
-}
-
-static coverage coverage_of(const merlin_maps *maps)
-{
-    img mask = maps->mask;
-    int w = mask.width, h = mask.height;
-    coverage c = {.all = img_value_count(&mask)};
-    for (int y = 0; y < h; y++)
-        c.object += covered(&mask, 0, y, 1, 0, w);
-    size_t edge = covered(&mask, 0, 0, 1, 0, w) + covered(&mask, 0, h - 1, 1, 0, w) + covered(&mask, 0, 0, 0, 1, h) +
-                  covered(&mask, w - 1, 0, 0, 1, h);
-    c.cut = (float)edge / (float)(2 * (w + h));
-    return c;
+    return coverage_box_of(&maps->mask).pixels;
 }
 
 static unsigned doubts_of_mask(const merlin_maps *maps)
 {
-    coverage c = coverage_of(maps);
-    float share = (float)c.object / (float)c.all;
+    const size_t object = object_pixels(maps);
+    const float share = (float)object / (float)img_value_count(&maps->mask);
     unsigned doubts = 0;
     if (share >= (maps->mask_source == MERLIN_MASK_FOUND ? FULL_IF_FOUND : FULL)) doubts |= MERLIN_DOUBT_NO_OBJECT;
     if (maps->mask_confidence < MASK_LITTLE_CONFIDENCE) doubts |= MERLIN_DOUBT_OBJECT_UNSURE;
-    if (c.cut >= MUCH_CUT && !(doubts & MERLIN_DOUBT_NO_OBJECT)) doubts |= MERLIN_DOUBT_OBJECT_CUT;
-    if (c.object < SMALL) doubts |= MERLIN_DOUBT_OBJECT_SMALL;
+    if (coverage_of_edge(&maps->mask) >= MUCH_CUT && !(doubts & MERLIN_DOUBT_NO_OBJECT))
+        doubts |= MERLIN_DOUBT_OBJECT_CUT;
+    if (object < SMALL) doubts |= MERLIN_DOUBT_OBJECT_SMALL;
     return doubts;
 }
 
@@ -203,8 +184,7 @@ static int lens_words(const merlin_maps *maps, char *text, size_t size)
 
 static int mask_words(const merlin_maps *maps, char *text, size_t size)
 {
-    coverage c = coverage_of(maps);
-    double share = 100 * (double)c.object / (double)c.all;
+    double share = 100 * (double)object_pixels(maps) / (double)img_value_count(&maps->mask);
     if (maps->mask_source == MERLIN_MASK_FOUND)
         return snprintf(text, size, "no object stands out: what was found fills %.0f %% of the photograph", share);
     return snprintf(text, size, "the mask covers %.0f %% of the photograph: no outline tells the shape", share);
@@ -321,7 +301,7 @@ int merlin_doubt_message(const merlin_maps *maps, merlin_doubt doubt, char *text
         return unrefined_words(maps, text, room);
     case MERLIN_DOUBT_OBJECT_SMALL:
         return snprintf(text, room, "the object has %zu pixels alone, of the 65,000 that the model is made for",
-                        coverage_of(maps).object);
+                        object_pixels(maps));
     case MERLIN_DOUBT_NORMALS_NOT_UNIT:
     case MERLIN_DOUBT_ALBEDO_CLAMPED:
     case MERLIN_DOUBT_ROUGHNESS_CLAMPED:

@@ -91,8 +91,6 @@ static status find_entry(void *context, const char *name, size_t *light)
 
 static status read_strengths_from(const char *strengths, const char *path, light_list *list)
 {
-    if (list->intensity)
-        return fail(MERLIN_BAD_INPUT, "%s and %s both say how strong the lights are; remove one", path, strengths);
     float(*value)[3] = calloc(list->count, sizeof *value);
     list->intensity = calloc(list->count, sizeof *list->intensity);
     status s = value && list->intensity ? OK : fail(MERLIN_NO_MEMORY, "no memory for %zu intensities", list->count);
@@ -107,8 +105,8 @@ static status read_strengths_from(const char *strengths, const char *path, light
 static status read_strengths(const char *path, light_list *list)
 {
     char *folder = file_folder_of(path), *strengths = NULL;
-    status s =
-        folder ? light_strengths_find(folder, NULL, &strengths) : fail(MERLIN_NO_MEMORY, "no memory for a file name");
+    status s = folder ? light_strengths_find(folder, path, list->intensity, &strengths)
+                      : fail(MERLIN_NO_MEMORY, "no memory for a file name");
     if (s == OK && strengths) s = read_strengths_from(strengths, path, list);
     free(folder);
     free(strengths);

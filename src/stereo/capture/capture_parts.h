@@ -23,13 +23,10 @@ status pst_find_ambient(const char *folder, const char *picture, char **path);
  * may be NULL), nor known by their names to belong to them. */
 status pst_list_skipped(const char *folder, const char *mask, const char *ambient, merlin_capture *c);
 
-/* Reads what light_strengths_find finds, if anything: one or three numbers per line, for the capture's lights or, after
- * a picture's name, for that one's; or a light in each column. */
-status pst_read_intensities(const char *folder, const char *lights, merlin_capture *c);
-
 /* Sets the lights of a capture that has their pictures' names. */
 status pst_set_lights(const char *path, const light_list *list, const merlin_capture_files *options, merlin_capture *c);
-/* Reads what light_strengths_find finds, if anything; fails if the list has intensities, too (listed). */
+/* Reads what light_strengths_find finds, if anything: one or three numbers per line, for the capture's lights or, after
+ * a picture's name, for that one's; or a light in each column. */
 status pst_read_strengths(const char *folder, const char *lights, bool listed, merlin_capture *c);
 /* Reads a list of lights, and assigns them to the folder's pictures. */
 status pst_read_light_list(const char *folder, const char *lights, const merlin_capture_files *options,

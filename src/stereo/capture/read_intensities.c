@@ -37,10 +37,10 @@ static status read_all(const char *path, const char *folder, merlin_capture *c)
     return s;
 }
 
-status pst_read_intensities(const char *folder, const char *lights, merlin_capture *c)
+status pst_read_strengths(const char *folder, const char *lights, bool listed, merlin_capture *c)
 {
     char *path;
-    status s = light_strengths_find(folder, lights, &path);
+    status s = light_strengths_find(folder, lights, listed, &path);
     if (s == OK && path) s = read_all(path, folder, c);
     free(path);
     return s;

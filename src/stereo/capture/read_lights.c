@@ -7,7 +7,6 @@
 
 #include "base/file.h"
 #include "base/lights/light_list.h"
-#include "base/lights/light_strengths.h"
 #include "stereo/capture/capture_parts.h"
 #include "stereo/capture/match_lights.h"
 
@@ -181,17 +180,6 @@ status pst_set_lights(const char *path, const light_list *list, const merlin_cap
     return options->near_lights ? set_positions(path, list, c) : set_directions(path, list, c);
 }
 
-status pst_read_strengths(const char *folder, const char *lights, bool listed, merlin_capture *c)
-{
-    char *path;
-    if (!listed) return pst_read_intensities(folder, lights, c);
-    status s = light_strengths_find(folder, lights, &path);
-    if (s == OK && path)
-        s = fail(MERLIN_BAD_INPUT, "%s and %s both say how strong the lights are; remove one", lights, path);
-    free(path);
-    return s;
-}
-
 status pst_read_light_list(const char *folder, const char *lights, const merlin_capture_files *options,
                            merlin_capture *c)
 {
@@ -209,7 +197,7 @@ status pst_read_light_list(const char *folder, const char *lights, const merlin_
 static status read_unlit(const char *folder, merlin_capture *c)
 {
     status s = pst_take_pictures(folder, false, NULL, 0, c);
-    return s == OK ? pst_read_intensities(folder, NULL, c) : s;
+    return s == OK ? pst_read_strengths(folder, NULL, false, c) : s;
 }
 
 status pst_read_plain(const char *folder, const merlin_capture_files *options, merlin_capture *c)

@@ -8,7 +8,7 @@
 
 /* SAMPLE: number of pixels; FREE: least number of pictures whose highlights are fitted, as of fewer those explain any
  * shading. */
-enum { SAMPLE = 256, FREE = 12 };
+enum { SAMPLE = 1024, FREE = 12 };
 
 static const pst_lobe glossy = {.masking = 0.28f, .tail = 2, .width = 0.04f, .shadow = PST_SHADOW_COST},
                       matte = {.masking = 1, .width = 0.16f, .shadow = PST_SHADOW_COST};
