@@ -112,7 +112,7 @@ static void grey_pictures_among_colour_ones_have_equal_channels(void **state)
     }
 }
 
-/* Of grey pictures and a coloured ambient one its luminance is subtracted, and the capture stays grey. */
+/* Its luminance is subtracted, and the capture stays grey. */
 static void a_coloured_ambient_picture_is_grey_among_grey_ones(void **state)
 {
     (void)state;

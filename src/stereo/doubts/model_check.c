@@ -13,6 +13,8 @@
 /* Number of pixels that are solved again, up to four times as many; number of pictures; least number, as fewer explain
  * everything. */
 enum { SMALL = 200, PICTURES = 16, FEWEST = 5 };
+/* Number of pixels whose residuals tell the median of all. */
+enum { ENOUGH = 1 << 20 };
 /* Residual from which on other models are tried, and the share of it that they must stay below. Measured: in real
  * captures, and rendered ones with gloss and shadows, wrong models leave at least 0.75 of it; linear values taken for
  * sRGB leave twice as much as necessary, a distance wrong by half ten times as much. */
@@ -31,10 +33,11 @@ typedef struct check {
  */
 static status typical_residual(const merlin_capture *c, const merlin_surface *s, double *out)
 {
-    size_t pixels = (size_t)c->width * (size_t)c->height, count = 0;
-    float *all = malloc((pixels + 1) * sizeof *all);
-    if (!all) return fail(MERLIN_NO_MEMORY, "no memory for %zu residuals", pixels);
-    for (size_t i = 0; i < pixels; i++)
+    const size_t pixels = (size_t)c->width * (size_t)c->height, step = pixels / ENOUGH + 1;
+    size_t count = 0;
+    float *all = malloc((pixels / step + 1) * sizeof *all);
+    if (!all) return fail(MERLIN_NO_MEMORY, "no memory for %zu residuals", pixels / step);
+    for (size_t i = 0; i < pixels; i += step)
         if (c->mask.data[i] > 0.5f) all[count++] = s->residual.data[i];
     qsort(all, count, sizeof *all, number_ascending);
     *out = count ? (double)all[count / 2] : HUGE_VAL;
@@ -213,12 +216,12 @@ static status check_values(check *c, const merlin_capture *of, warnings *out)
 /* ---- the whole ---- */
 
 /* Measures the residual of the model as it is: that of the small pictures, whose solver may miss the surface that was
- * found in the large ones, or of these. */
+ * found in the large ones, or, unless it is not noticed anyway, of these. */
 static status check_own(check *c, const merlin_capture *of, const merlin_surface *found)
 {
     double whole = HUGE_VAL;
     status s = residual_of(&c->small, c->method, &c->own);
-    if (s == OK && found->residual.data) s = typical_residual(of, found, &whole);
+    if (s == OK && c->own > noticed && found->residual.data) s = typical_residual(of, found, &whole);
     c->own = fmin(c->own, whole);
     return s;
 }

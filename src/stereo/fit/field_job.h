@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What field_fit.c and field_sweep.c do to the pixels of a field, a task at a time. Internal to both.
+/* Tasks that field_fit.c and field_sweep.c do for the pixels of a field, one at a time. Internal to both.
  *
  *     pst_field_job job = {.field = f, .task = PST_REFINE};
  *     status s = pst_field_run(&job, 0, f->count);
