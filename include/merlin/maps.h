@@ -125,6 +125,7 @@ typedef enum merlin_doubt {
     MERLIN_DOUBT_DEPTH_CLAMPED = 1 << 19,
     MERLIN_DOUBT_NOT_REFINED = 1 << 20,       /* photographs is above 1, and refined 0: shape is the network's alone */
     MERLIN_DOUBT_STRENGTHS_UNEQUAL = 1 << 21, /* refined, but the photographs' lights do not seem equally strong */
+    MERLIN_DOUBT_LIGHTS_FAR = 1 << 22,        /* refined, with all lights taken to be far away as the lens is unknown */
 } merlin_doubt;
 
 /* Returns a doubt's name, "light_elsewhere", as in report.json; "" for another value. */

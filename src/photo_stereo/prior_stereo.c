@@ -36,8 +36,9 @@ static float kept_share(const merlin_surface *found, int pictures)
     return found->lights_near && pictures <= FEW ? 1 / (float)pictures : 0;
 }
 
-static void take(const merlin_surface *found, int pictures, merlin_maps *maps)
+static void take(const merlin_surface *found, const merlin_capture *c, merlin_maps *maps)
 {
+    const int pictures = c->count;
     const float kept = kept_share(found, pictures);
     for (size_t i = 0; i < img_value_count(&maps->mask); i++) {
         if (!(maps->mask.data[i] >= 0.5f)) continue;
@@ -51,6 +52,7 @@ static void take(const merlin_surface *found, int pictures, merlin_maps *maps)
     maps->refined = 1;
     maps->doubts &= ~(unsigned)MERLIN_DOUBT_NOT_REFINED;
     if (found->strengths_unsure) maps->doubts |= MERLIN_DOUBT_STRENGTHS_UNEQUAL;
+    if (!pinhole_is_near(&c->camera)) maps->doubts |= MERLIN_DOUBT_LIGHTS_FAR;
 }
 
 /* Surface and lights that are expected, in the space of the capture's camera. */
@@ -136,7 +138,7 @@ status prior_stereo_refine(const prior_stereo *p, merlin_maps *maps)
         turn_normals(maps, true);
     }
     const bool taken = s == OK && !found.lights_unsure;
-    if (taken) take(&found, count, maps);
+    if (taken) take(&found, p->capture, maps);
     merlin_surface_free(&found); /* before the depth is integrated, as that needs as much memory again */
     expectation_free(&e);
     if (taken) s = refit_depth(maps);

@@ -39,6 +39,7 @@ echo "near lamps before a known lens are found again by a network"
 mkdir torch
 cp lamps/dome_*.png lamps/mask.* torch
 succeeds '"refined":true' "$MERLIN" stereo torch --size 64 --views 1 --fov 60 --json -o torch.maps
+grep -q lights_far stdout && complain "lamps before a known lens are taken to be far: $(cat stdout)"
 within "$("$NORMALS_DIFFER" torch.maps maps)" 12 || complain "its normals are another object's"
 
 echo "what is wrong with the files is told"
@@ -74,6 +75,7 @@ fi
 succeeds '"photographs":16' stereo clip.mp4 --json
 present clip.merlin/stereo/{maps.exr,mesh.glb}
 grep -q '"refined":true' stdout || complain "no surface was found by stereo: $(cat stdout)"
+grep -q '"code":"lights_far"' stdout || complain "no word of the lens that nobody knows: $(cat stdout)"
 within "$("$NORMALS_DIFFER" clip.merlin/stereo maps)" 12 || complain "its normals are another object's"
 succeeds '"photographs":5' stereo clip.mp4 --frames 5 --json -o five
 refuses 2 'not for the video clip.mp4' "$MERLIN" stereo clip.mp4 --near

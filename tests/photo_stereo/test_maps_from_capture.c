@@ -107,6 +107,8 @@ static void the_lens_of_exif_is_as_good_as_a_known_one(void **state)
     pst_capture_see(&c, (float)wide, 0);
     if (merlin_maps_from_capture(f->any, &c, &p, &by_camera) != MERLIN_OK) fail_msg("%s", merlin_error());
     assert_float_equal(by_exif.fov, wide, 1e-3);
+    assert_false(doubts(&by_exif, MERLIN_DOUBT_LIGHTS_FAR));
+    assert_false(doubts(&by_params, MERLIN_DOUBT_LIGHTS_FAR));
     for (int i = 0; i < 3 * SIZE * SIZE; i++) {
         assert_float_equal(by_params.normal.data[i], by_camera.normal.data[i], 1e-3);
         assert_float_equal(by_exif.normal.data[i], by_camera.normal.data[i], 1e-3);
@@ -198,6 +200,7 @@ static void refined_maps_are_whole(void **state)
     picture_sphere(12, 3, &c);
     assert_int_equal(merlin_maps_from_capture(f->any, &c, &p, &maps), MERLIN_OK);
     assert_true(maps.refined == !doubts(&maps, MERLIN_DOUBT_NOT_REFINED));
+    assert_true(maps.refined == doubts(&maps, MERLIN_DOUBT_LIGHTS_FAR)); /* nothing tells the lens */
     assert_null(maps.reconstruction.data);
     for (int i = 0; i < SIZE * SIZE; i++) {
         const float *n = maps.normal.data + 3 * i;

@@ -163,6 +163,7 @@ static const struct {
     {MERLIN_DOUBT_DEPTH_CLAMPED, "depth_clamped"},
     {MERLIN_DOUBT_NOT_REFINED, "not_refined"},
     {MERLIN_DOUBT_STRENGTHS_UNEQUAL, "strengths_unequal"},
+    {MERLIN_DOUBT_LIGHTS_FAR, "lights_far"},
 };
 enum { NAMES = sizeof names / sizeof *names };
 
@@ -228,6 +229,9 @@ static const char *plain_words(merlin_doubt doubt)
     case MERLIN_DOUBT_STRENGTHS_UNEQUAL:
         return "the pictures' lights do not seem equally strong, or their exposures were not the same, and normals may "
                "be many degrees off: fix the exposure, or list the strengths in light_intensities.txt";
+    case MERLIN_DOUBT_LIGHTS_FAR:
+        return "nothing tells the lens, so the lamps were taken to be far away: if they were nearer than some five times "
+               "the object's size, normals are many degrees off, which --fov DEGREES, the field of view, mends";
     default:
         return "";
     }

@@ -29,6 +29,7 @@ static const char help[] =
     "  --count N        only the first N objects\n"
     "  --views N        maps as merlin estimate --views N makes them (default 4, as there)\n"
     "  --dim SHARE      expose each picture by chance to a share from this one to 1, as a camera left to itself does\n"
+    "  --lens-unknown   as if nothing were known of the lens\n"
     "      --json       report on standard output as JSON\n"
     "  -t, --threads N  how many threads work (default: one a processor)\n"
     "  -q, --quiet      no progress\n"
@@ -52,6 +53,7 @@ static status parse(int argc, char **argv, request *r)
         {"views", .integer = &r->options.views, .low = 1, .high = 8},
         {"dim", .real = &r->options.dim, .low = 0, .high = 1},
         {"json", .flag = &r->json},
+        {"lens-unknown", .flag = &r->options.lens_unknown},
         {"quiet", 'q', .flag = &r->options.quiet},
         {"help", 'h', .flag = &r->help},
         {0},

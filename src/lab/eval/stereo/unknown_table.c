@@ -33,10 +33,11 @@ int unknown_row_pictures(const unknown_object *o, int row)
 }
 
 /* Borrows so many of the pictures, evenly chosen, without their lights. */
-static status choose(const merlin_capture *all, int count, merlin_capture *out)
+static status choose(const merlin_capture *all, int count, bool lens_unknown, merlin_capture *out)
 {
     *out = *all;
     out->count = count;
+    if (lens_unknown) out->camera = (pinhole){0};
     out->lighting = MERLIN_UNKNOWN_LIGHTS;
     out->picture = calloc((size_t)count, sizeof *out->picture);
     out->light = calloc((size_t)count, sizeof *out->light);
@@ -149,7 +150,7 @@ static status measure_solution(const stereo_object *o, const solution *found, un
 static status measure(run *r, const stereo_object *o, int count, int row, unknown_object *out)
 {
     merlin_capture c;
-    status s = choose(&o->capture, count, &c);
+    status s = choose(&o->capture, count, r->options->lens_unknown, &c);
     for (int way = 0; way < UNKNOWN_WAYS && s == OK; way++) {
         solution found = {0};
         s = r->options->stopped && r->options->stopped() ? fail(MERLIN_STOPPED, "stopped")
