@@ -69,7 +69,7 @@ static const char help[] =
     "      --smooth N       frames of the moving average, 1 to 100 (default 8); 0: each frame by itself\n"
     "      --share K/N      of several photographs the K-th of N equal shares alone, for as many machines\n"
     "  -r, --resume         of several, those alone that lack maps or files asked for, or have older ones than\n"
-    "                       photograph and mask, or another photograph's\n"
+    "                       photograph and mask, another photograph's, or ones by other options\n"
     "      --json           a report as JSON on standard output, one line a photograph\n"
     "  -t, --threads N      how many threads work (default: one a processor)\n"
     "  -q, --quiet          no other output than errors\n"
@@ -317,7 +317,9 @@ static size_t drop_done(const request *r, photo_list *photos)
     size_t count = 1;
     if (r->mesh) inside[count++] = "mesh.glb";
     if (r->html) inside[count++] = PAGE_FILE;
-    return photo_list_drop_done(photos, &(photo_wanted){inside, r->meshes.at, (size_t)r->meshes.count});
+    return photo_list_drop_done(
+        photos,
+        &(photo_wanted){inside, r->meshes.at, (size_t)r->meshes.count, {&r->params, r->weights, r->flash_weights}});
 }
 
 /* Removes photographs of other shares, and those that are done. */
@@ -342,12 +344,12 @@ int cmd_estimate(int argc, char **argv)
     s = photo_list_make(argv, argc, r.mask, r.output, &photos);
     if (s != OK) return cli_fail("estimate", s);
     if (!r.quiet) photo_list_tell(&photos, "estimate");
-    skip_photos(&r, &photos);
+    s = photo_find_models(r.model_name, &r.weights, &r.flash_weights);
+    if (s == OK) skip_photos(&r, &photos);
     bool told = false;
     r.photos = &photos;
     r.told = &told;
     if (photo_hint_given(&r.params.hint) && photos.count) photo_use_hint(&photos.at[0], &r.params.hint);
-    s = photo_find_models(r.model_name, &r.weights, &r.flash_weights);
     stage_bar bar;
     stage_bar_begin(&bar, r.quiet);
     const watch shown = stage_bar_watch(&bar);

@@ -28,7 +28,8 @@ static status write_meshes(const estimate_write *w, const merlin_maps *maps, map
 static status write_more(const estimate_write *w, const merlin_maps *maps, maps_staging *to)
 {
     char path[PATH_MAX];
-    status s = w->job ? photo_source_note(w->job, staging_folder(to->at[0])) : OK;
+    const photo_how how = {&w->request->params, w->request->weights, w->request->flash_weights};
+    status s = w->job ? photo_source_note(w->job, &how, staging_folder(to->at[0])) : OK;
     if (s == OK) s = write_meshes(w, maps, to);
     const page_source of = {standard_input_name(w->photo), w->output, 0};
     if (s == OK && w->request->html) s = page_write(maps, &of, staging_path(to->at[0], PAGE_FILE, path));

@@ -21,12 +21,41 @@ static bool put_file(cJSON *to, const char *key, const char *path)
     return true;
 }
 
-/* Describes the files; NULL if one is not there. */
-static cJSON *describe(const photo_job *job)
+static void put_hint(cJSON *to, const merlin_hint *hint)
+{
+    if (hint->box.width > 0) {
+        const int box[] = {hint->box.x, hint->box.y, hint->box.width, hint->box.height};
+        json_put_item(to, "box", cJSON_CreateIntArray(box, 4));
+    }
+    cJSON *points = hint->point_count > 0 ? json_put_array(to, "points") : NULL;
+    for (int i = 0; i < hint->point_count && points; i++) {
+        const int point[] = {hint->point[i].x, hint->point[i].y};
+        json_append(points, cJSON_CreateIntArray(point, 2));
+    }
+}
+
+/* Puts the options that maps depend on. */
+static void put_options(cJSON *to, const photo_how *how)
+{
+    const merlin_params *p = how->params;
+    cJSON *options = json_put_object(to, "options");
+    json_put_text(options, "model", file_name_of(how->weights));
+    if (how->flash_weights) json_put_text(options, "flash_model", file_name_of(how->flash_weights));
+    json_put_number(options, "size", p->size);
+    json_put_number(options, "views", p->views);
+    if (p->fov > 0) json_put_number(options, "fov", (double)p->fov);
+    if (p->flash) json_put_bool(options, "flash", true);
+    if (!p->auto_exposure) json_put_number(options, "exposure", (double)p->exposure);
+    put_hint(options, &p->hint);
+}
+
+/* Describes files and options; NULL if a file is not there. */
+static cJSON *describe(const photo_job *job, const photo_how *how)
 {
     cJSON *source = cJSON_CreateObject();
     const bool there =
         put_file(source, "photograph", job->photo) && (!job->mask || put_file(source, "mask", job->mask));
+    if (there) put_options(source, how);
     if (there) return source;
     cJSON_Delete(source);
     return NULL;
@@ -44,10 +73,10 @@ static cJSON *read_report(const char *folder, char **path)
     return report;
 }
 
-status photo_source_note(const photo_job *job, const char *folder)
+status photo_source_note(const photo_job *job, const photo_how *how, const char *folder)
 {
     char *path;
-    cJSON *report = read_report(folder, &path), *source = describe(job);
+    cJSON *report = read_report(folder, &path), *source = describe(job, how);
     status s = OK;
     if (!source) s = fail(MERLIN_BAD_INPUT, "%s, or its mask, is not there any more", job->photo);
     if (s == OK) json_put_item(report, "source", source);
@@ -60,10 +89,10 @@ status photo_source_note(const photo_job *job, const char *folder)
     return s;
 }
 
-bool photo_source_is_noted(const photo_job *job, const char *folder)
+bool photo_source_is_noted(const photo_job *job, const photo_how *how, const char *folder)
 {
     char *path;
-    cJSON *report = read_report(folder, &path), *source = describe(job);
+    cJSON *report = read_report(folder, &path), *source = describe(job, how);
     char *noted = json_print_line(cJSON_GetObjectItem(report, "source")), *own = json_print_line(source);
     const bool same = noted && own && strcmp(noted, own) == 0;
     cJSON_Delete(report);

@@ -250,11 +250,12 @@ static bool is_older(const char *path, const photo_job *job)
     return job->mask && (stat(job->mask, &mask) != 0 || mask.st_mtime > own.st_mtime);
 }
 
-/* Tells whether a photograph has no maps, those of another one, older ones, or not all files that are wanted. */
+/* Tells whether a photograph has no maps, those of another one, older or otherwise made ones, or not all files that
+ * are wanted. */
 static bool is_to_do(const photo_job *job, size_t i, const void *context)
 {
     const photo_wanted *wanted = context;
-    bool old = !photo_source_is_noted(job, job->output);
+    bool old = !photo_source_is_noted(job, &wanted->how, job->output);
     (void)i;
     for (const char *const *name = wanted->inside; *name && !old; name++) {
         char *path = file_join(job->output, *name);

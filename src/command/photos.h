@@ -9,6 +9,7 @@
 
 #include "base/status.h"
 #include "command/photo_list.h"
+#include "command/photo_source.h"
 #include "merlin/stereo.h"
 
 /* Makes the list. The results of one photograph go to `output`, by default its name without ending + ".merlin".
@@ -27,9 +28,10 @@ void photo_list_share(photo_list *list, const photo_share *share);
 typedef struct photo_wanted {
     const char *const *inside, *const *elsewhere;
     size_t count; /* of those elsewhere */
+    photo_how how;
 } photo_wanted;
-/* Removes photographs that have all of these files, none of them older than photograph and mask, and made of these
- * (photo_source.h); returns their number. */
+/* Removes photographs that have all of these files, none of them older than photograph and mask, and made of these and
+ * by the same options (photo_source.h); returns their number. */
 size_t photo_list_drop_done(photo_list *list, const photo_wanted *wanted);
 /* Prints one line for each folder with skipped files. */
 void photo_list_tell(const photo_list *list, const char *command);

@@ -343,6 +343,14 @@ grep -q "2 of 4 photographs have their maps" err || complain "what was there is 
 touch -d "1 hour" shares/b.hdr
 estimate shares --size 64 -o shared -r >out 2>err || complain "a changed photograph is not taken again: $(cat err)"
 grep -q "^shares/b.hdr" out && [ "$(wc -l <out)" -eq 1 ] || complain "not the changed one alone but $(cat out)"
+for other in '--size 96' '--size 96 --model merlin-any' '--size 96 --fov 30' '--size 96 --fov 30 --flash' '--size 96 --views 1 --exposure 1'; do
+    # shellcheck disable=SC2086 # each is several options
+    estimate shares $other -o shared -r --share 2/2 >out 2>err || complain "$other: does not go on: $(cat err)"
+    [ "$(wc -l <out)" -eq 2 ] || complain "maps by other options than $other are kept: $(cat out err)"
+    # shellcheck disable=SC2086
+    estimate shares $other -o shared -r --share 2/2 >out 2>err || complain "$other: does not go on: $(cat err)"
+    [ -s out ] && complain "$other: its maps are made again: $(cat out)"
+done
 for wrong in 0/2 3/2 1 1/0 a/b -1/2 1/2x; do refuses 2 "wants K/N" estimate shares --share="$wrong"; done
 rm -r shares shared
 
