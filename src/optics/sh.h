@@ -66,6 +66,25 @@ static inline vec3 sh_irradiance_gradient(const real sh[9][3], vec3 n, vec3 weig
                      first * s[2] + second * (s[5] * n.y + s[7] * n.x) + (real)1.8923493915151202 * s[6] * n.z);
 }
 
+/* Holds coefficients to what light can have that is negative nowhere: in band l they are no longer than √(2l + 1) L00,
+ * which all light from one direction has, by the addition theorem. */
+static inline void sh_hold_positive(real sh[9][3])
+{
+    const real longest[3] = {1, (real)1.7320508075688772, (real)2.2360679774997898};
+    for (int c = 0; c < 3; c++) {
+        if (!(sh[0][c] > 0)) sh[0][c] = 0;
+        for (int band = 1; band < 3; band++) {
+            const int first = band * band, last = first + 2 * band;
+            real square = 0, most = longest[band] * sh[0][c];
+            for (int i = first; i <= last; i++)
+                square += sh[i][c] * sh[i][c];
+            if (!(square > most * most)) continue;
+            for (int i = first; i <= last; i++)
+                sh[i][c] *= most / sqrt(square);
+        }
+    }
+}
+
 /* Convert one channel's band 2 to the symmetric matrix q of dᵀ q d, and back. */
 static inline void sh_band2_matrix(const real sh[9][3], int channel, real q[3][3])
 {

@@ -192,6 +192,22 @@ static void light_has_words(void **state)
     assert_string_equal(words, "");
 }
 
+/* Black in place of what is negative adds no light. */
+static void the_rests_picture_has_the_power_of_its_coefficients(void **state)
+{
+    (void)state;
+    merlin_found_light light = {.known = 1};
+    for (int c = 0; c < 3; c++) {
+        light.rest[0][c] = 1 + (float)c;
+        light.rest[2][c] = light.rest[6][c] = 1.5f; /* negative behind */
+    }
+    found_lights lights;
+    assert_int_equal(found_light_stand(&light, 0, &lights), OK);
+    for (int c = 0; c < 3; c++)
+        assert_float_equal(found_lights_rest(&lights)->sh[0][c], light.rest[0][c], 1e-3 * (double)light.rest[0][c]);
+    env_map_free(&lights.rest);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -201,6 +217,7 @@ int main(void)
         cmocka_unit_test(what_hides_the_lamp_takes_its_light),
         cmocka_unit_test(a_light_turned_by_steps_stands_as_one_turned_at_once),
         cmocka_unit_test(light_has_words),
+        cmocka_unit_test(the_rests_picture_has_the_power_of_its_coefficients),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

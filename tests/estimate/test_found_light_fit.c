@@ -239,6 +239,33 @@ static void nothing_changes_where_nothing_is_told_or_seen(void **state)
     scene_free(&s);
 }
 
+/* A rest that is no light, and one that hardly reaches what is seen, explain nothing, however often they are taken. */
+static void what_is_told_of_the_rest_stays_light(void **state)
+{
+    (void)state;
+    static const float told[2][9] = {{-0.05f, 0, 0.1f}, {0.024f, 0, -0.034f, 0, 0, 0, 0.03f}};
+    for (int i = 0; i < 2; i++) {
+        float code[MODEL_LIGHTS], rest[9][3];
+        scene s;
+        merlin_found_light light;
+        put_light(aside(45, 90), 0, warm, 0, 0.1f, code);
+        photograph(code, &s);
+        put_light(vec3_scale(aside(50, 90), 0.9f), 0.3f, vec3_make(1, 1, 1), 0, 0, s.told);
+        for (int k = 0; k < 27; k++)
+            rest[k / 3][k % 3] = told[i][k / 3];
+        model_encode_sh((const float(*)[3])rest, s.told + MODEL_LIGHTS_REST);
+        assert_int_equal(fit(&s, INFINITY), OK);
+        found_light_take(s.told, &light);
+        for (int c = 0; c < 3; c++) {
+            assert_true(light.rest[0][c] >= 0 && light.rest[0][c] < 1);
+            assert_true(fabsf(light.rest[2][c]) < 1.8f * light.rest[0][c] + 1e-3f);
+            assert_true(fabsf(light.rest[6][c]) < 2.3f * light.rest[0][c] + 1e-3f);
+        }
+        assert_true(misses(&s, s.told) < 0.1);
+        scene_free(&s);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -249,6 +276,7 @@ int main(void)
         cmocka_unit_test(without_a_lamp_all_light_is_scaled),
         cmocka_unit_test(a_rooms_coefficients_are_those_of_the_photograph),
         cmocka_unit_test(nothing_changes_where_nothing_is_told_or_seen),
+        cmocka_unit_test(what_is_told_of_the_rest_stays_light),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,6 +7,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -117,6 +118,36 @@ static void turned_environment_in_a_turned_direction_is_the_environment(void **s
     }
 }
 
+static double band_length(double sh[9][3], int band)
+{
+    double square = 0;
+    for (int i = band * band; i < (band + 1) * (band + 1); i++)
+        square += sh[i][1] * sh[i][1];
+    return sqrt(square);
+}
+
+/* Light from one direction is the limit of what is light, and stays as it is; what is none is held to it. */
+static void coefficients_are_held_to_those_of_light(void **state)
+{
+    (void)state;
+    double one[9][3] = {{0}}, same[9][3], dark[9][3], long_bands[9][3];
+    sh_accumulate(one, direction(7, 31), vec3_make(1, 2, 3));
+    memcpy(same, one, sizeof same);
+    sh_hold_positive(same);
+    for (int i = 0; i < 27; i++) {
+        assert_true(fabs(same[i / 3][i % 3] - one[i / 3][i % 3]) < 1e-12);
+        dark[i / 3][i % 3] = i < 3 ? -0.1 : 1;
+        long_bands[i / 3][i % 3] = i < 3 ? 1 : 10;
+    }
+    sh_hold_positive(dark);
+    sh_hold_positive(long_bands);
+    for (int i = 0; i < 27; i++)
+        assert_true(dark[i / 3][i % 3] == 0);
+    assert_true(long_bands[0][1] == 1);
+    assert_true(fabs(band_length(long_bands, 1) - sqrt(3)) < 1e-12);
+    assert_true(fabs(band_length(long_bands, 2) - sqrt(5)) < 1e-12);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -125,6 +156,7 @@ int main(void)
         cmocka_unit_test(constant_radiance_gives_pi_irradiance),
         cmocka_unit_test(gradient_is_that_of_central_differences),
         cmocka_unit_test(turned_environment_in_a_turned_direction_is_the_environment),
+        cmocka_unit_test(coefficients_are_held_to_those_of_light),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

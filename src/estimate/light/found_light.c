@@ -69,24 +69,42 @@ bool found_light_lamp(const merlin_found_light *light, lamp *out)
 
 enum { REST_WIDTH = 128, REST_HEIGHT = 64 };
 
-/* Renders the radiance of the coefficients. The three bands of a bright sky may be negative somewhere, which becomes
- * black. */
-static status picture_of_rest(const merlin_found_light *light, img *out)
+/* Renders the radiance of the coefficients; returns its power in each channel, over all directions. The three bands of
+ * a bright sky may be negative somewhere, which becomes black. */
+static vec3 draw_rest(const merlin_found_light *light, img *out)
 {
-    status s = img_new(out, REST_WIDTH, REST_HEIGHT, 3);
-    for (int i = 0; s == OK && i < REST_WIDTH * REST_HEIGHT; i++) {
+    vec3 power = {0, 0, 0};
+    for (int i = 0; i < REST_WIDTH * REST_HEIGHT; i++) {
         real basis[9];
         const int x = i % REST_WIDTH, y = i / REST_WIDTH;
-        float u = ((float)x + 0.5f) / REST_WIDTH, v = ((float)y + 0.5f) / REST_HEIGHT;
+        float u = ((float)x + 0.5f) / REST_WIDTH, v = ((float)y + 0.5f) / REST_HEIGHT, *at = out->data + 3 * i;
         sh_basis(latlong_direction(u, v), basis);
         for (int c = 0; c < 3; c++) {
             float sum = 0;
             for (int k = 0; k < 9; k++)
                 sum += basis[k] * light->rest[k][c];
-            out->data[3 * i + c] = fmaxf(sum, 0);
+            at[c] = fmaxf(sum, 0);
         }
+        power = vec3_fma(power, latlong_solid_angle(y, REST_WIDTH, REST_HEIGHT), vec3_of(at));
     }
-    return s;
+    return power;
+}
+
+/* Renders the rest as a picture of the power that its coefficients have, which black in place of what is negative would
+ * add to. */
+static status picture_of_rest(const merlin_found_light *light, img *out)
+{
+    status s = img_new(out, REST_WIDTH, REST_HEIGHT, 3);
+    if (s != OK) return s;
+    const vec3 power = draw_rest(light, out);
+    const float drawn[3] = {power.x, power.y, power.z};
+    for (int c = 0; c < 3; c++) {
+        const float true_power = fmaxf(light->rest[0][c], 0) * 2 * sqrtf((float)PI);
+        const float scale = drawn[c] > 0 ? true_power / drawn[c] : 0;
+        for (int i = 0; i < REST_WIDTH * REST_HEIGHT; i++)
+            out->data[3 * i + c] *= scale;
+    }
+    return OK;
 }
 
 static vec3 turned(vec3 d, float degrees)
@@ -112,8 +130,8 @@ status found_light_stand(const merlin_found_light *light, float turn, found_ligh
     *out = (found_lights){.count = 0};
     if (!light->known)
         return fail(MERLIN_BAD_INPUT,
-                    "the model of these maps knows one light alone and so found none in the photograph: "
-                    "estimate it by merlin-any");
+                    "no light is known of these maps: they are a captured surface's, or a photograph's by a model that "
+                    "knows one light alone: estimate it by merlin-any");
     if (light->flash > 0) {
         out->lamps[out->count] = lamp_at(vec3_make(0, 0, 0));
         out->lamps[out->count++].tint = vec3_make(light->flash, light->flash, light->flash);

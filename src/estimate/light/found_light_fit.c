@@ -22,6 +22,9 @@ static const double PLAUSIBLE = 0.4, FLOOR = 0.1;
 static const double TOLD_DIRECTION = 2, TOLD_DISTANCE = 0.33;
 /* Weight of what the network tells of a room's coefficients, as a share of the mean weight of the pixels. */
 static const double TOLD_ROOM = 0.2;
+/* Largest factor of what the network tells of the rest beside a lamp, and of all light without one: where little of it
+ * falls on the side that the camera sees, any factor explains the photograph. */
+static const double MOST_OF_REST = 4, MOST_OF_ALL = 16;
 /* So far aside the network tells a lamp's direction as well as this fit. */
 static const float TRUSTED = 70 * DEGREE;
 
@@ -125,8 +128,18 @@ static vec3 lit_by_lamp(const spot *s, const place *at)
 
 /* ---- strengths ---- */
 
-/* Minimizes |A x - b|² of x no less than `least`, given AᵀA and Aᵀb, one unknown after the other. */
-static void solve(int n, double (*a)[COEFFICIENTS], const double *b, double least, double *x)
+/* Limits of one unknown. */
+typedef struct limits {
+    double least, most;
+} limits;
+
+/* Limits of the sources' strengths. */
+static const limits FREE[SOURCES] = {{0, HUGE_VAL}, {0, HUGE_VAL}, {0, HUGE_VAL}};
+static const limits BESIDE_LAMP[SOURCES] = {{0, HUGE_VAL}, {0, HUGE_VAL}, {0, MOST_OF_REST}};
+static const limits ALONE[1] = {{0, MOST_OF_ALL}};
+
+/* Minimizes |A x - b|² of x within limits (NULL: none), given AᵀA and Aᵀb, one unknown after the other. */
+static void solve(int n, double (*a)[COEFFICIENTS], const double *b, const limits *within, double *x)
 {
     double change = 1;
     for (int turn = 0; turn < 200 && change > 1e-5; turn++) {
@@ -135,7 +148,8 @@ static void solve(int n, double (*a)[COEFFICIENTS], const double *b, double leas
             double left = b[i];
             for (int j = 0; j < n; j++)
                 left -= j == i ? 0 : a[i][j] * x[j];
-            const double next = a[i][i] > 0 ? fmax(left / a[i][i], least) : 0;
+            double next = a[i][i] > 0 ? left / a[i][i] : 0;
+            if (within) next = fmin(fmax(next, within[i].least), within[i].most);
             change = fmax(change, fabs(next - x[i]) / (fabs(next) + 1e-3));
             x[i] = next;
         }
@@ -180,7 +194,7 @@ static void sum_equations(const fitting *f, int n, const double x[SOURCES], bool
 }
 
 /* Fits the strengths of the first n sources to the values, and returns the mean cost of what is left. */
-static double fit_strengths(fitting *f, int n, double x[SOURCES])
+static double fit_strengths(fitting *f, int n, const limits *within, double x[SOURCES])
 {
     enum { PASSES = 4 };
     double sum = 0, cost = 0;
@@ -192,7 +206,7 @@ static double fit_strengths(fitting *f, int n, double x[SOURCES])
     for (int pass = 0; pass < PASSES; pass++) {
         double a[SOURCES][COEFFICIENTS] = {{0}}, b[SOURCES] = {0};
         sum_equations(f, n, x, pass == 0, a, b);
-        solve(n, a, b, 0, x);
+        solve(n, a, b, within, x);
     }
     for (int i = 0; i < f->count; i++) {
         const double r = residual(f, n, x, i) / scale_of(f, i) / PLAUSIBLE;
@@ -209,8 +223,8 @@ static void judge(fitting *f, place *at)
     for (int i = 0; i < f->count; i++)
         f->source[LAMP][i] = found_light_mean(lit_by_lamp(&f->spots[i], at));
     const double from_told = (double)(at->inverse - f->told_inverse);
-    at->cost = log(fit_strengths(f, SOURCES, x) + 1e-6) + TOLD_DIRECTION * (1 - (double)vec3_dot(at->toward, f->told)) +
-               TOLD_DISTANCE * from_told * from_told;
+    at->cost = log(fit_strengths(f, SOURCES, FREE, x) + 1e-6) +
+               TOLD_DIRECTION * (1 - (double)vec3_dot(at->toward, f->told)) + TOLD_DISTANCE * from_told * from_told;
 }
 
 /* Finds the best of nine places: as far aside as the network tells or less, and to other sides. */
@@ -282,7 +296,7 @@ static void fit_channel(fitting *f, const place *at, int c, double x[SOURCES])
         f->source[FLASH][i] = channel_of(s->flash, c);
         f->source[OTHER][i] = channel_of(s->rest, c);
     }
-    fit_strengths(f, SOURCES, x);
+    fit_strengths(f, SOURCES, BESIDE_LAMP, x);
 }
 
 /* Fits all light of one channel, as it is told, at once: how much of it is flash, and how much comes from everywhere,
@@ -295,11 +309,11 @@ static double fit_whole(fitting *f, float flash, int c)
         f->value[i] = channel_of(s->value, c);
         f->source[0][i] = flash * channel_of(s->flash, c) + channel_of(s->rest, c);
     }
-    fit_strengths(f, 1, x);
+    fit_strengths(f, 1, ALONE, x);
     return x[0];
 }
 
-/* Scales the rest by channel, and adds to its coefficients. */
+/* Scales the rest by channel, and adds to its coefficients, as far as it stays light. */
 static void change_rest(const double by[3], double (*add)[COEFFICIENTS], float code[MODEL_LIGHTS])
 {
     float rest[COEFFICIENTS][3];
@@ -307,6 +321,7 @@ static void change_rest(const double by[3], double (*add)[COEFFICIENTS], float c
     for (int k = 0; k < COEFFICIENTS; k++)
         for (int c = 0; c < 3; c++)
             rest[k][c] = (float)(by[c] * (double)rest[k][c] + add[c][k]);
+    sh_hold_positive(rest);
     model_encode_sh((const float(*)[3])rest, code + MODEL_LIGHTS_REST);
 }
 
@@ -332,7 +347,7 @@ static void fit_room(const fitting *f, int c, double by, double change[COEFFICIE
         mean += a[k][k] / COEFFICIENTS;
     for (int k = 0; k < COEFFICIENTS; k++)
         a[k][k] += TOLD_ROOM * mean, change[k] = 0;
-    solve(COEFFICIENTS, a, b, -HUGE_VAL, change);
+    solve(COEFFICIENTS, a, b, NULL, change);
 }
 
 /* Tells whether most of the light comes from a room. */
@@ -378,9 +393,18 @@ static void put_all(fitting *f, const place *at, float code[MODEL_LIGHTS])
     code[MODEL_LIGHTS_DISTANCE] = at->inverse;
 }
 
+/* Makes light of what the network tells of the rest, whose coefficients may be any. */
+static void hold_rest(float code[MODEL_LIGHTS])
+{
+    static const double same[3] = {1, 1, 1};
+    double none[3][COEFFICIENTS] = {{0}};
+    change_rest(same, none, code);
+}
+
 status found_light_fit(const lit_photo *of, float code[MODEL_LIGHTS])
 {
     fitting f;
+    hold_rest(code);
     status s = fitting_new(of, code, &f);
     if (s != OK) return s;
     if (f.count >= LEAST_SPOTS && found_light_has_lamp(code)) {
