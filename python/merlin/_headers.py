@@ -80,7 +80,7 @@ Shot = _struct("shot", [("flash", c_int), ("focal_35mm", c_float), ("reduced", c
 MOST_POINTS = 16
 Point = _struct("hint.point[0]", [("x", c_int), ("y", c_int)])
 Box = _struct("hint.box", [("x", c_int), ("y", c_int), ("width", c_int), ("height", c_int)])
-Hint = _struct("hint", [("point_count", c_int), ("point", Point * MOST_POINTS), ("box", Box)])
+Hint = _struct("hint", [("point_count", c_int), ("point", Point * MOST_POINTS), ("box", Box), ("reduced", c_int)])
 LEAST_SIZE, LARGEST_SIZE, SIZE_STEP = 64, 512, 32
 Params = _struct("params", [
     ("size", c_int), ("views", c_int), ("auto_exposure", c_int), ("exposure", c_float), *_WATCH, ("shot", Shot),

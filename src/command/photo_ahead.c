@@ -30,10 +30,12 @@ status photo_take(const photo_job *job, photo_taken *out)
     status s = read_both(job, &out->photo, &mask);
     out->read_seconds = clock_seconds() - began;
     if (s == OK) {
-        s = merlin_object_find(&out->photo, &mask, job->hint, &out->object);
+        merlin_hint hint = job->hint ? *job->hint : (merlin_hint){.point_count = 0};
+        (void)merlin_shot_read(job->photo, &out->shot);
+        hint.reduced = out->shot.reduced;
+        s = merlin_object_find(&out->photo, &mask, &hint, &out->object);
         if (s != OK) s = fail_in(s, "%s", job->photo);
     }
-    if (s == OK) (void)merlin_shot_read(job->photo, &out->shot);
     merlin_image_free(&mask);
     if (s != OK) photo_taken_free(out);
     return s;

@@ -157,6 +157,7 @@ static status estimate(merlin_model *model, seen *s, const merlin_params *params
     while (p.views > 1 && p.views * s->count > RUNS)
         p.views--;
     if (!(p.fov > 0)) p.fov = field_of_view(s->capture);
+    p.hint.reduced = s->capture->reduced;
     status st = photograph(s, 0, &first);
     if (st == OK) st = find_object(s, &first, &p.hint, &object);
     if (st == OK) st = estimate_several(model, &first, &object, &p, &further, maps);

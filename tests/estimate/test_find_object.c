@@ -165,6 +165,16 @@ static void a_box_may_be_the_whole_photograph(void **state)
     assert_true(found_in(ring, &hint, NULL) > 0.98);
 }
 
+/* Hints count the pixels of a file that was read at a third of its size. */
+static void hints_of_a_reduced_photograph_are_its_files(void **state)
+{
+    (void)state;
+    const merlin_hint point = {.point_count = 1, .point = {{.x = 3 * 55 + 1, .y = 3 * 100 + 2}}, .reduced = 3};
+    const merlin_hint box = {.box = {.x = 3 * 15, .y = 3 * 60, .width = 3 * 80, .height = 3 * 80}, .reduced = 3};
+    assert_true(found_in(two_balls, &point, NULL) > 0.97);
+    assert_true(found_in(two_balls, &box, NULL) > 0.97);
+}
+
 static void nothing_to_find_is_said(void **state)
 {
     (void)state;
@@ -218,6 +228,8 @@ static void hints_outside_the_photograph_are_refused(void **state)
     is_refused(&(merlin_hint){.box = {.x = 1, .y = 1, .width = 5, .height = 2147483647}}, "does not lie");
     is_refused(&(merlin_hint){.box = {.x = 1, .y = 1, .width = 5}}, "does not lie");
     is_refused(&(merlin_hint){.point_count = 17}, "at most 16");
+    is_refused(&(merlin_hint){.point_count = 1, .point = {{.x = 2 * SIDE, .y = 3}}, .reduced = 2},
+               "400,3 lies outside the photograph of 400×400");
     is_refused(&(merlin_hint){.point_count = 1,
                               .point = {{.x = 3, .y = 3}},
                               .box = {.x = 10, .y = 10, .width = 20, .height = 20}},
@@ -249,6 +261,7 @@ int main(void)
         cmocka_unit_test(a_point_chooses_among_objects),
         cmocka_unit_test(a_box_shuts_out_what_is_beside_it),
         cmocka_unit_test(a_box_may_be_the_whole_photograph),
+        cmocka_unit_test(hints_of_a_reduced_photograph_are_its_files),
         cmocka_unit_test(nothing_to_find_is_said),
         cmocka_unit_test(threads_change_nothing),
         cmocka_unit_test(hints_outside_the_photograph_are_refused),

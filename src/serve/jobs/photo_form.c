@@ -104,6 +104,7 @@ status photo_form_read(const work_context *w, const merlin_hint *hint, merlin_im
 {
     const bool hinted = hint && (hint->point_count > 0 || hint->box.width > 0);
     merlin_image mask = {0};
+    merlin_shot shot = {.reduced = 1};
     char path[PATH_MAX];
     *photo = (merlin_image){0};
     *object = (merlin_object){.confidence = 0};
@@ -111,7 +112,10 @@ status photo_form_read(const work_context *w, const merlin_hint *hint, merlin_im
     status s = read_both(w, photo_path(w, path), photo, &mask);
     if (s == OK && w->stop()) s = fail(MERLIN_STOPPED, "stopped");
     if (s == OK) w->progress(w->progress_context, "finding the object", 0);
-    if (s == OK) s = merlin_object_find(photo, mask.data && !hinted ? &mask : NULL, hinted ? hint : NULL, object);
+    if (s == OK && hinted) (void)merlin_shot_read(path, &shot);
+    merlin_hint in_file = hinted ? *hint : (merlin_hint){.point_count = 0};
+    in_file.reduced = shot.reduced;
+    if (s == OK) s = merlin_object_find(photo, mask.data && !hinted ? &mask : NULL, &in_file, object);
     merlin_image_free(&mask);
     if (s != OK) merlin_image_free(photo);
     return s;
