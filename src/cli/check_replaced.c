@@ -15,37 +15,13 @@
 #include "base/text/map_names.h"
 #include "merlin/mesh.h"
 
-static status refuse(const char *folder, const char *name)
-{
-    return fail(MERLIN_CANNOT_WRITE,
-                "cannot write into %s: its %s is no earlier result, for there is no maps.exr beside it, and would be "
-                "replaced; choose another folder",
-                folder, name);
-}
-
-static bool is_file_in(const char *folder, const char *name)
-{
-    char *path = file_join(folder, name);
-    bool is = path && file_exists(path) && !file_is_folder(path);
-    free(path);
-    return is;
-}
-
-/* Returns the first of the names that a file of the folder has; NULL if none has. */
-static const char *first_in(const char *folder, const char *const *names)
-{
-    while (*names && !is_file_in(folder, *names))
-        names++;
-    return *names;
-}
-
 /* Refuses if the folder has a part of this mesh. */
 static status check_mesh(const char *folder, const char *mesh)
 {
     merlin_files files;
     status s = merlin_mesh_files(NULL, mesh, &files);
     for (size_t i = 0; i < files.count && s == OK; i++)
-        if (is_file_in(folder, files.at[i])) s = refuse(folder, files.at[i]);
+        if (map_names_is_in(folder, files.at[i])) s = map_names_refuse(folder, files.at[i]);
     merlin_files_free(&files);
     return s;
 }
@@ -91,11 +67,10 @@ status check_inputs_kept(const char *folder, const char *photo, const char *mask
 
 status check_replaced(const char *folder, bool meshes)
 {
-    static const char *const own[] = {"maps.exr", "report.json", NULL};
     static const char *const surface[] = {"mesh.ply", "mesh.obj", "mesh.glb", NULL};
-    if (!file_is_folder(folder) || first_in(folder, own)) return OK;
-    const char *name = first_in(folder, map_names);
-    status s = name ? refuse(folder, name) : OK;
+    if (!file_is_folder(folder) || map_names_is_in(folder, "maps.exr") || map_names_is_in(folder, "report.json"))
+        return OK;
+    status s = map_names_check(folder);
     for (int i = 0; meshes && s == OK && surface[i]; i++)
         s = check_mesh(folder, surface[i]);
     if (s != OK) return s;

@@ -20,6 +20,7 @@
 #include "command/options.h"
 #include "command/photos.h"
 #include "merlin/view.h"
+#include "view/view_name.h"
 
 static const char help[] =
     "usage: merlin view DIR [-o FILE] [options]\n\n"
@@ -40,13 +41,6 @@ typedef struct request {
     bool json, quiet, help;
 } request;
 
-static status check_output_name(const char *path)
-{
-    static const char *const endings[] = {".html", ".htm", NULL};
-    if (file_ends_in_any(file_name_of(path), endings)) return OK;
-    return fail(MERLIN_WRONG_USE, "-o %s: the page's name ends in .html or .htm", path);
-}
-
 static status parse(int *argc, char ***argv, request *r)
 {
     const cli_option options[] = {
@@ -60,7 +54,7 @@ static status parse(int *argc, char ***argv, request *r)
     status s = cli_read_options(argc, argv, options);
     if (s != OK || r->help) return s;
     s = maps_folder_take(*argc, *argv, &r->input);
-    return s == OK && r->output ? check_output_name(r->output) : s;
+    return s == OK && r->output ? view_check_name(r->output) : s;
 }
 
 /* ---- report ---- */

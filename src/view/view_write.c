@@ -10,6 +10,7 @@
 #include "image/resize.h"
 #include "image/write/write.h"
 #include "merlin/view.h"
+#include "view/view_name.h"
 #include "view/view_page.h"
 #include "view/view_planes.h"
 #include "view/view_scene.h"
@@ -129,6 +130,7 @@ merlin_status merlin_view_write(const merlin_maps *maps, const merlin_view_param
     page p = {.scene = NULL};
     status s = api_needs(__func__, maps && path);
     if (s == OK) s = check_side(how->side);
+    if (s == OK) s = view_check_name(path);
     if (s == OK) s = fill(maps, how, &p);
     if (s == OK) s = file_print(path, print_page, &p);
     page_free(&p);

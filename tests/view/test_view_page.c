@@ -249,6 +249,8 @@ static void wrong_use_leaves_no_page(void **state)
     assert_int_equal(merlin_view_write(&empty, NULL, f->page), MERLIN_WRONG_USE);
     assert_int_equal(merlin_view_write(NULL, NULL, f->page), MERLIN_WRONG_USE);
     assert_int_equal(merlin_view_write(&f->maps, NULL, NULL), MERLIN_WRONG_USE);
+    assert_int_equal(merlin_view_write(&f->maps, NULL, "photo.png"), MERLIN_WRONG_USE);
+    assert_false(file_exists("photo.png"));
     assert_false(file_exists(f->page));
     char nowhere[200];
     snprintf(nowhere, sizeof nowhere, "%s/none/page.html", f->folder);

@@ -4,7 +4,19 @@
 #ifndef MERLIN_BASE_TEXT_MAP_NAMES_H
 #define MERLIN_BASE_TEXT_MAP_NAMES_H
 
+#include <stdbool.h>
+
+#include "base/status.h"
+
 /* Names of all PNGs that estimate and stereo write beside maps.exr, except meshes' textures; ended by NULL. */
 extern const char *const map_names[];
+
+/* Refuses a folder that has a file of these names, but no maps.exr or report.json: it is somebody's picture, not an
+ * earlier result, and would be replaced. MERLIN_CANNOT_WRITE. */
+status map_names_check(const char *folder);
+/* The same words for another file of a folder. */
+status map_names_refuse(const char *folder, const char *name);
+/* Tells whether a folder has a plain file of this name. */
+bool map_names_is_in(const char *folder, const char *name);
 
 #endif

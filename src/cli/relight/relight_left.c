@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Pictures of an earlier run in the same folder: they are not removed, since this run did not write them, but reported.
- */
+/* Pictures in the same folder that this run did not write: an earlier run's are not removed, but reported; somebody's
+ * own are not replaced. */
 #include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "base/file.h"
+#include "base/text/map_names.h"
 #include "cli/relight/relight_parts.h"
 #include "cli/written.h"
 
@@ -33,4 +34,24 @@ void relight_find_left(const relight_job *job, relight_result *result)
         if (result->left++ == 0) snprintf(result->left_name, sizeof result->left_name, "%s", name);
     }
     file_list_free(paths, count);
+}
+
+/* Refuses to replace a numbered picture beside which the sheet is missing that every run writes with it. */
+static status check_numbered(const char *folder, const char *kind, const char *ending, const char *sheet)
+{
+    char name[24];
+    snprintf(name, sizeof name, "%s000%s", kind, ending);
+    if (!map_names_is_in(folder, name) || map_names_is_in(folder, sheet)) return OK;
+    return fail(MERLIN_CANNOT_WRITE,
+                "cannot write into %s: its %s is no earlier result, for there is no %s beside it, and would be "
+                "replaced; choose another folder",
+                folder, name, sheet);
+}
+
+status relight_check_replaced(const relight_job *job)
+{
+    status s = OK;
+    if (job->frames || !file_is_folder(job->output)) return OK;
+    if (relight_count_lights(job) > 1) s = check_numbered(job->output, "relit_", relight_ending(job), "relit.png");
+    return s == OK && job->orbit ? check_numbered(job->output, "frame_", ".png", "orbit.png") : s;
 }

@@ -69,6 +69,7 @@ status relight_output(const relight_job *job, relight_result *result)
     relight_work w = {.job = job, .result = result};
     *result = (relight_result){0};
     status s = job->dome.count && !job->rti.wanted ? relight_dome_check(job) : OK;
+    if (s == OK) s = relight_check_replaced(job);
     if (s == OK) s = staging_begin(job->output, job->inputs, &w.staging);
     if (s != OK) return s;
     s = job->frames ? relight_write_frames(&w) : write_all(&w);

@@ -14,6 +14,8 @@ bool relight_is_numbered(const char *name, const char *kind);
 merlin_lamp relight_dome_lamp(const relight_job *job, int i);
 /* Fails with MERLIN_CANNOT_WRITE if the folder has files of another dome that would be used together with these. */
 status relight_dome_check(const relight_job *job);
+/* Fails with MERLIN_CANNOT_WRITE if pictures would be replaced that no earlier run wrote. */
+status relight_check_replaced(const relight_job *job);
 /* Counts the numbered pictures of an earlier run that remain with those that were written. */
 void relight_find_left(const relight_job *job, relight_result *result);
 status relight_write_dome(relight_work *w);
