@@ -113,7 +113,7 @@ typedef enum merlin_doubt {
     MERLIN_DOUBT_LENS_NARROW = 1 << 8,   /* fov is below 5 */
     MERLIN_DOUBT_LENS_WIDE = 1 << 9,     /* fov is above 95 */
     MERLIN_DOUBT_DARK = 1 << 10,         /* too few shades: nearly black */
-    MERLIN_DOUBT_OBJECT_CUT = 1 << 11,   /* a quarter of the photograph's edge or more cuts through the object */
+    MERLIN_DOUBT_OBJECT_CUT = 1 << 11,   /* the photograph's edge is 15 % or more of its outline, which is cut */
     MERLIN_DOUBT_OBJECT_SMALL = 1 << 12, /* the object has fewer than 2500 pixels */
     MERLIN_DOUBT_GREY = 1 << 13,         /* a black-and-white picture: albedo's colour is unknown */
     MERLIN_DOUBT_REDUCED = 1 << 14,      /* params.shot says that it was read at a reduced size */

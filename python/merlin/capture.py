@@ -152,10 +152,10 @@ class Capture:
         None: the one that ships. The capture's mask is the object; without one it is searched for. views, fov, points,
         box, progress and stop: as of Model.estimate."""
         from .maps import Maps
-        from .model import Model, hint_of
+        from .model import Model, fov_of, hint_of
         model = Model() if model is None else model
         params = call("params_default")
-        params.views, params.fov = whole(views, "views"), 0 if fov is None else real(fov, "fov")
+        params.views, params.fov = whole(views, "views"), fov_of(fov)
         params.hint = hint_of(points, box)
         network = _near_network("auto", None)
         if network is not None:

@@ -52,7 +52,19 @@ def hint_of(points: Optional[Points], box: Optional[Box]) -> Any:
         if len(numbers) != 4:
             raise WrongUseError("a box is x, y, width, height")
         hint.box = h.Box(*(whole(number, "a box's numbers") for number in numbers))
+        if hint.box.width < 1 or hint.box.height < 1:
+            raise WrongUseError("a box is one pixel wide and high at least")
     return hint
+
+
+def fov_of(fov: Optional[float]) -> float:
+    """A field of view as the library takes it, for which 0 is an unknown one."""
+    if fov is None:
+        return 0
+    degrees = real(fov, "fov")
+    if degrees == 0:
+        raise WrongUseError("fov is 1 to 150 degrees, or None")
+    return degrees
 
 
 def read_shot(path: PathLike) -> Shot:
@@ -102,7 +114,10 @@ def find_object(photo: Picture, mask: Optional[Picture] = None, *, points: Optio
 
     points: up to 16 (x, y), pixels of the object; box: (x, y, width, height), which holds all of it. Both help the
     search, and are refused where there is a mask."""
-    return FoundObject(_find(*_taken(photo, mask, linear), hint_of(points, box)))
+    hint = hint_of(points, box)
+    if is_path(photo):
+        hint.reduced = _shot(photo).reduced
+    return FoundObject(_find(*_taken(photo, mask, linear), hint))
 
 
 class _Ahead(threading.Thread):
@@ -207,7 +222,7 @@ class Model:
         if exposure is not None:
             params.auto_exposure, params.exposure = 0, real(exposure, "exposure")
         params.flash, params.last = int(flash), int(last)
-        params.fov = 0 if fov is None else real(fov, "fov")
+        params.fov = fov_of(fov)
         hint = hint_of(points, box)
         watch = Watch(progress, stop)
         watch.put(params)
@@ -225,6 +240,7 @@ class Model:
         def take() -> Tuple[Owner, Owner]:
             if is_path(photo):
                 params.shot = _shot(photo)
+                hint.reduced = params.shot.reduced
             if isinstance(mask, FoundObject):
                 color, cover = _taken(photo, mask.mask, linear)
                 found = _find(color, cover, hint)

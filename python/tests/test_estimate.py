@@ -325,6 +325,37 @@ def test_a_page_is_written(kept_maps, tmp_path):
     assert "<html" in text and "cup" in text
     with pytest.raises(merlin.WrongUseError):
         kept_maps.view(tmp_path / "viewer.html", side=7)
+    with pytest.raises(merlin.WrongUseError, match="ends in .html"):
+        kept_maps.view(tmp_path / "photo.png")
+
+
+def test_save_replaces_nobodys_pictures(kept_maps, tmp_path):
+    """As the command does: an albedo.png without maps.exr beside it is no earlier result."""
+    own = tmp_path / "own"
+    own.mkdir()
+    (own / "albedo.png").write_bytes(b"mine")
+    with pytest.raises(merlin.CannotWriteError, match="albedo.png is no earlier result"):
+        kept_maps.save(own)
+    assert (own / "albedo.png").read_bytes() == b"mine" and len(list(own.iterdir())) == 1
+    for _ in range(2):
+        kept_maps.save(tmp_path / "saved")
+
+
+def test_nothing_stands_for_unknown_but_none(model, demo):
+    """The library's own zeros are refused, as the command refuses them."""
+    with pytest.raises(merlin.WrongUseError, match="fov"):
+        model.estimate(demo, size=64, views=1, fov=0)
+    with pytest.raises(merlin.WrongUseError, match="box"):
+        merlin.find_object(demo, box=(0, 0, 0, 0))
+
+
+def test_normals_of_any_length_are_directions(maps):
+    """Those longer than one are not cut off component by component."""
+    light = (0.7, 0.3, -0.4)
+    whole = maps.relight(light, by="direct")
+    maps.normal[...] *= 2
+    doubled = maps.relight(light, by="direct")
+    assert abs(doubled - whole).max() < 2e-3
 
 
 def test_a_model_is_opened_by_name_and_closed(demo):

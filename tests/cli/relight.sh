@@ -114,6 +114,14 @@ for color in 500K '#ff' 1,2 -1,0,0 0,0,0 red; do refuses 2 '--color' relight dis
 refuses 2 '--power' relight disc.merlin --light 0,0,0 --power 0
 refuses 2 'no length' relight disc.merlin --direction 0,0,0
 refuses 2 'no distant lights' relight disc.merlin --direction 0,0,1 --by network -o none
+refuses 2 'knows lamps in front .* 0.5 to 2 away' relight disc.merlin --light 3,3,3 --by network -o none
+refuses 2 'knows lamps in front' relight disc.merlin --light 0.5,0.2,-1.5 --by network -o none
+mkdir mine
+: >mine/frame_000.png
+: >mine/relit_000.png
+refuses 1 'mine: its frame_000.png is no earlier result' relight disc.merlin --orbit 3 -o mine
+refuses 1 'mine: its relit_000.png is no earlier result' relight disc.merlin --light 0,0,0 --light 0.1,0,0 -o mine
+[ -s mine/frame_000.png ] && complain "somebody's picture was replaced"
 succeeds '"code":"relit_burnt_out".*"burnt_out":\(0.9\|1\)' relight disc.merlin --light 0,0,0 --power 1000 -o glare --json
 grep -q '^merlin relight: disc.merlin: \(9[0-9]\|100\) % of the object is burnt out when relit' stderr || complain "no word: $(cat stderr)"
 succeeds '"warnings":\[\]' relight disc.merlin --light 0,0,0 --power 1000 --exposure auto -o glare --json

@@ -58,6 +58,9 @@ static void what_the_mask_shows_is_told(void **state)
     make(&maps, 0, 0, WIDTH / 2, HEIGHT); /* half of the upper and the lower edge, and one side */
     assert_int_equal(doubts_of(&maps, &unknown), MERLIN_DOUBT_OBJECT_CUT);
     merlin_maps_free(&maps);
+    make(&maps, 0, 10, 50, 80); /* a third of its outline */
+    assert_int_equal(doubts_of(&maps, &unknown), MERLIN_DOUBT_OBJECT_CUT);
+    merlin_maps_free(&maps);
     make(&maps, 40, 30, 80, 60); /* 1200 pixels */
     maps.mask_confidence = 0.45f;
     assert_int_equal(doubts_of(&maps, &unknown), MERLIN_DOUBT_OBJECT_SMALL | MERLIN_DOUBT_OBJECT_UNSURE);

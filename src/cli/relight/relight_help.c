@@ -60,7 +60,7 @@ static const char help_on_lights[] =
 
 static const char help_on_options[] =
     "      --by WAY         brdf (default): the maps' BRDF with cast shadows and the network's global illumination;\n"
-    "                       network: the relighting decoder, made for lamps at distance 1 from 0,0,-1 with z >= -1\n"
+    "                       network: the relighting decoder, for lamps 0.5 to 2 away from 0,0,-1 with z >= -1\n"
     "      --no-shadows     brdf without cast shadows (lamps and surroundings), as in the paper\n"
     "      --no-bounces     brdf with cast shadows, but without the network's global illumination\n"
     "      --matte          brdf without gloss: what least squares, as of RTI tools, finds normals in\n"

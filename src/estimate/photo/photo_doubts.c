@@ -18,7 +18,7 @@
 #include "merlin/merlin.h"
 
 /* Thresholds. merlin/maps.h gives the meaning of the warnings, docs/notes/doubts.md their derivation. */
-static const float MUCH_BURNT_OUT = 0.1f, MUCH_CUT = 0.25f, LIKELY_ELSEWHERE = 0.6f;
+static const float MUCH_BURNT_OUT = 0.1f, MUCH_CUT = 0.15f, LIKELY_ELSEWHERE = 0.6f;
 static const float FULL = 0.97f, FULL_IF_FOUND = 0.66f, NARROW = 5, WIDE = 95;
 static const float DARK = 0.02f, LITTLE_OUTWARD = 0.1f, MUCH_INWARD = 0.4f, MUCH_FLAT = 0.6f;
 enum { SMALL = 2500, FEW_SHADES = 48, PHOTOGRAPHS_ENOUGH = 7 };
@@ -30,6 +30,14 @@ static size_t object_pixels(const merlin_maps *maps)
     return coverage_box_of(&maps->mask).pixels;
 }
 
+/* Tells whether much of the object's outline, as long as its box's, is the photograph's edge. */
+static bool is_cut(const img *mask)
+{
+    const coverage_box b = coverage_box_of(mask);
+    const float outline = (float)(b.right - b.left + b.bottom - b.top), edge = (float)(mask->width + mask->height);
+    return b.pixels > 0 && coverage_of_edge(mask) * edge >= MUCH_CUT * outline;
+}
+
 static unsigned doubts_of_mask(const merlin_maps *maps)
 {
     const size_t object = object_pixels(maps);
@@ -37,8 +45,7 @@ static unsigned doubts_of_mask(const merlin_maps *maps)
     unsigned doubts = 0;
     if (share >= (maps->mask_source == MERLIN_MASK_FOUND ? FULL_IF_FOUND : FULL)) doubts |= MERLIN_DOUBT_NO_OBJECT;
     if (maps->mask_confidence < MASK_LITTLE_CONFIDENCE) doubts |= MERLIN_DOUBT_OBJECT_UNSURE;
-    if (coverage_of_edge(&maps->mask) >= MUCH_CUT && !(doubts & MERLIN_DOUBT_NO_OBJECT))
-        doubts |= MERLIN_DOUBT_OBJECT_CUT;
+    if (is_cut(&maps->mask) && !(doubts & MERLIN_DOUBT_NO_OBJECT)) doubts |= MERLIN_DOUBT_OBJECT_CUT;
     if (object < SMALL) doubts |= MERLIN_DOUBT_OBJECT_SMALL;
     return doubts;
 }
@@ -230,7 +237,8 @@ static const char *plain_words(merlin_doubt doubt)
         return "the pictures' lights do not seem equally strong, or their exposures were not the same, and normals may "
                "be many degrees off: fix the exposure, or list the strengths in light_intensities.txt";
     case MERLIN_DOUBT_LIGHTS_FAR:
-        return "nothing tells the lens, so the lamps were taken to be far away: if they were nearer than some five times "
+        return "nothing tells the lens, so the lamps were taken to be far away: if they were nearer than some five "
+               "times "
                "the object's size, normals are many degrees off, which --fov DEGREES, the field of view, mends";
     default:
         return "";

@@ -11,6 +11,12 @@
 /* Largest number of points per side from which shadow rays start. */
 enum { SHADOW_SIDE = 512 };
 
+/* Distances from the object's middle of lamps that the relighting decoder may stand for by one at distance 1, which all
+ * of its training's were; and, beside an environment, whose light it does not part from the lamp's, by one unchanged.
+ */
+static const float NEAREST = 0.5f, FARTHEST = 2, LITTLE_NEARER = 0.8f, LITTLE_FARTHER = 1.25f;
+static const vec3 middle = {0, 0, -1};
+
 /* Multiplies by the mask. Zeros are not written to, here and below (image.h). */
 static void multiply_mask(img *image, const img *mask)
 {
@@ -44,8 +50,13 @@ static status light_by_brdf(const relighter *s, const lamp *light, img *full, im
 
 static status light_by_network(network *n, const relighter *s, const lamp *light, img *full, img *low)
 {
-    illumination both = {light->at, s->environment ? (const float(*)[3])s->environment->sh : NULL};
+    const vec3 way = vec3_sub(light->at, middle);
+    const float distance = s->environment ? 1 : vec3_length(way);
+    illumination both = {vec3_fma(middle, 1 / distance, way),
+                         s->environment ? (const float(*)[3])s->environment->sh : NULL};
     status result = network_relight(n, s->features, &both, low);
+    for (size_t i = 0; result == OK && distance != 1 && i < img_value_count(low); i++)
+        if (low->data[i] != 0) low->data[i] /= distance * distance;
     if (result == OK) result = surface_resize_image(low, &s->low.mask, &s->full.mask, full);
     /* whether enlarged or not, it continues outside the object */
     if (result == OK) multiply_mask(full, &s->full.mask);
@@ -121,6 +132,20 @@ static status dark(const relighter *s, img *full, img *low)
     return result == OK ? img_new(low, s->low.mask.width, s->low.mask.height, 3) : result;
 }
 
+/* Refuses lamps that are not where those of the relighting decoder's training were. */
+static status check_place(vec3 at, bool environment)
+{
+    const float distance = vec3_length(vec3_sub(at, middle));
+    const float least = environment ? LITTLE_NEARER : NEAREST, most = environment ? LITTLE_FARTHER : FARTHEST;
+    if (distance >= least && distance <= most && at.z >= middle.z) return OK;
+    return fail(
+        MERLIN_WRONG_USE,
+        "the relighting decoder knows lamps in front of the object (z from -1 on), %g to %g away from 0,0,-1%s, "
+        "and %g,%g,%g is not: relight by BRDF",
+        (double)least, (double)most, environment ? " beside an environment" : "", (double)at.x, (double)at.y,
+        (double)at.z);
+}
+
 status relighter_check(merlin_relighting how, const lamp *light, bool environment)
 {
     if (how < MERLIN_BY_BRDF || how > MERLIN_BY_BRDF_DIRECT)
@@ -135,7 +160,7 @@ status relighter_check(merlin_relighting how, const lamp *light, bool environmen
         return fail(MERLIN_WRONG_USE,
                     "beside an environment the relighting decoder knows white light of power 1 alone; "
                     "relight by BRDF");
-    return OK;
+    return check_place(light->at, environment);
 }
 
 /* Adds a lamp's light, with its bounces if these can be separated from the environment's, so that each part can be

@@ -40,10 +40,11 @@ void surface_free(surface *s)
 
 static void tidy_normal(float n[3])
 {
-    vec3 v =
-        vec3_make(clamp(n[0], -1, 1), clamp(n[1], -1, 1), n[2] > LEAST_NORMAL_Z ? clamp(n[2], 0, 1) : LEAST_NORMAL_Z);
-    v = vec3_normalize(v);
-    vec3_put(v, n);
+    const float length = vec3_length(vec3_of(n));
+    const float scale = length > 1.001f && isfinite(length) ? 1 / length : 1; /* before ends are cut */
+    vec3 v = vec3_make(clamp(scale * n[0], -1, 1), clamp(scale * n[1], -1, 1),
+                       n[2] > LEAST_NORMAL_Z ? clamp(scale * n[2], 0, 1) : LEAST_NORMAL_Z);
+    vec3_put(vec3_normalize(v), n);
 }
 
 /* Sets values to zero, without writing to those that are zero already (image.h). */
