@@ -42,6 +42,12 @@ succeeds '"refined":true' "$MERLIN" stereo torch --size 64 --views 1 --fov 60 --
 grep -q lights_far stdout && complain "lamps before a known lens are taken to be far: $(cat stdout)"
 within "$("$NORMALS_DIFFER" torch.maps maps)" 12 || complain "its normals are another object's"
 
+echo "a ring of near lamps flattens what it finds, and the networks' shape stays"
+"$MERLIN" relight maps --orbit 16 --frame 256 -o orbit --quiet || complain "no orbit"
+mkdir ring
+cp orbit/frame_*.png ring
+succeeds '"refined":false' "$MERLIN" stereo ring --size 64 --views 1 --json -o ring.maps
+
 echo "what is wrong with the files is told"
 cp dome/dome_001.png two/dome_002.png
 cp dome/mask.webp two/other_mask.webp

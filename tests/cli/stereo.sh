@@ -50,7 +50,9 @@ cp near/relit_00?.png disc.merlin/mask.png leds
 succeeds '"distance_unsure":true' stereo leds --lights near.txt --near --json
 grep -q 'how far the object is' stderr || complain "stderr: $(cat stderr)"
 succeeds '"distance_unsure":false' stereo leds --lights near.txt --near --distance 1 --json
-[ -s stderr ] && complain "stderr: $(cat stderr)"
+grep -q 'how far the object is' stderr && complain "stderr: $(cat stderr)"
+grep -q 'nothing tells the lens' stderr || complain "no word of the lens: $(cat stderr)"
+grep -q 'three pictures or so' stderr || complain "no word of so few pictures: $(cat stderr)"
 
 echo "a network of near lights solves them, too"
 "$TINY_MODEL" nfps.safetensors nfps || complain "no weights of near lights"

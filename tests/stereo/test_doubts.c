@@ -57,6 +57,24 @@ static vec3 light_at(int k)
     return vec3_make(sinf(tilt) * cosf(phi), sinf(tilt) * sinf(phi), cosf(tilt));
 }
 
+static float across(int pixel)
+{
+    return (float)(pixel % SIZE) + 0.5f - 0.5f * SIZE;
+}
+
+static float up(int pixel)
+{
+    const int row = pixel / SIZE;
+    return 0.5f * SIZE - (float)row - 0.5f;
+}
+
+static vec3 normal_of(shape what, float x, float y)
+{
+    const float d = 0.1f;
+    return vec3_normalize(vec3_make((height_of(what, x - d, y) - height_of(what, x + d, y)) / (2 * d),
+                                    (height_of(what, x, y - d) - height_of(what, x, y + d)) / (2 * d), 1));
+}
+
 static void take(shape what, float noise, merlin_capture *c)
 {
     rng random = rng_at(7, 0, 0);
@@ -64,11 +82,10 @@ static void take(shape what, float noise, merlin_capture *c)
     for (int k = 0; k < LIGHTS; k++)
         vec3_put(light_at(k), c->light[k].direction);
     for (int i = 0; i < SIZE * SIZE; i++) {
-        const float x = (float)(i % SIZE) + 0.5f - 0.5f * SIZE, y = 0.5f * SIZE - (float)(i / SIZE) - 0.5f, d = 0.1f;
+        const float x = across(i), y = up(i);
         if (!is_of(what, x, y)) continue;
         c->mask.data[i] = 1;
-        vec3 n = vec3_normalize(vec3_make((height_of(what, x - d, y) - height_of(what, x + d, y)) / (2 * d),
-                                          (height_of(what, x, y - d) - height_of(what, x, y + d)) / (2 * d), 1));
+        const vec3 n = normal_of(what, x, y);
         for (int k = 0; k < LIGHTS; k++) {
             float seen =
                 0.6f * fmaxf(vec3_dot(n, vec3_of(c->light[k].direction)), 0) + noise * (rng_uniform(&random) - 0.5f);
@@ -347,6 +364,63 @@ static void tones_that_were_taken_for_others_are_told(void **state)
     c.linear = true;
     change_tones(&c, srgb_encode);
     assert_told(&c, "other_tones", "leave it out");
+    c.bits = 16;
+    c.linear = false;
+    assert_told(&c, "other_tones", "which 16 bits are where the file says nothing");
+    capture_drop(&c);
+}
+
+/* The warnings of the first pictures alone, solved as usual. */
+static warnings few_doubts_of(merlin_capture *c, int count)
+{
+    merlin_surface surface;
+    warnings doubts = {0};
+    c->count = count;
+    assert_int_equal(pst_solve(c, &(merlin_stereo_params){.method = MERLIN_STEREO_ROBUST}, &surface), OK);
+    assert_int_equal(pst_doubts(c, &surface, &doubts), OK);
+    c->count = LIGHTS;
+    merlin_surface_free(&surface);
+    return doubts;
+}
+
+/* Three pictures have no residual, whatever is wrong with them. */
+static void few_pictures_check_nothing_and_it_is_told(void **state)
+{
+    (void)state;
+    merlin_capture c;
+    take(BUMPS, 0.01f, &c);
+    warnings doubts = few_doubts_of(&c, 3);
+    assert_non_null(warnings_find(&doubts, "normals_unchecked"));
+    doubts = few_doubts_of(&c, LIGHTS);
+    assert_int_equal(doubts.count, 0);
+    dim_a_third(&c, 0.5f);
+    doubts = few_doubts_of(&c, 4);
+    assert_true(warnings_find(&doubts, "strengths_unequal") || warnings_find(&doubts, "normals_unchecked"));
+    capture_drop(&c);
+}
+
+/* Paints the surface in patches, from nearly black to as bright as before, and adds its varnish's highlight. */
+static void add_gloss(shape what, float strength, float sharpness, merlin_capture *c)
+{
+    for (int i = 0; i < SIZE * SIZE; i++)
+        for (int k = 0; k < LIGHTS && c->mask.data[i] > 0; k++) {
+            const vec3 half = vec3_normalize(vec3_add(vec3_of(c->light[k].direction), vec3_make(0, 0, 1)));
+            const float near = fmaxf(vec3_dot(half, normal_of(what, across(i), up(i))), 0);
+            const float paint = 0.55f + 0.45f * sinf(0.25f * across(i)) * sinf(0.2f * up(i));
+            const float seen = paint * (float)c->picture[k].wide[i] / 65535 + strength * powf(near, sharpness);
+            c->picture[k].wide[i] = relief_code(fminf(seen, 1));
+        }
+}
+
+/* Highlights look like stronger lights to a fit of three dimensions. */
+static void gloss_is_not_taken_for_strengths(void **state)
+{
+    (void)state;
+    merlin_capture c;
+    take(COIN, 0.002f, &c);
+    add_gloss(COIN, 0.4f, 40, &c);
+    const warnings doubts = few_doubts_of(&c, LIGHTS);
+    if (doubts.count) fail_msg("%s: %s", doubts.at[0].code, doubts.at[0].message);
     capture_drop(&c);
 }
 
@@ -409,6 +483,27 @@ static void another_distance_or_lens_is_named(void **state)
     c.camera.distance = 1.65f;
     doubts = near_doubts_of(&c);
     assert_non_null(warnings_find(&doubts, "other_lens"));
+    c.camera = pinhole_of(SIZE, SIZE, 40); /* ten degrees too wide */
+    c.camera.distance = 1.65f;
+    doubts = near_doubts_of(&c);
+    assert_non_null(warnings_find(&doubts, "other_lens"));
+    capture_drop(&c);
+}
+
+/* A lens that nobody tells is assumed, which is told; one that somebody tells is not. */
+static void an_assumed_lens_is_told(void **state)
+{
+    (void)state;
+    merlin_capture c;
+    take_near(&c);
+    c.camera = (pinhole){.distance = 1.65f};
+    pst_capture_see(&c, 0, 0);
+    warnings doubts = near_doubts_of(&c);
+    assert_non_null(warnings_find(&doubts, "lens_assumed"));
+    c.camera = (pinhole){.distance = 1.65f};
+    pst_capture_see(&c, 30, 0);
+    doubts = near_doubts_of(&c);
+    assert_null(warnings_find(&doubts, "lens_assumed"));
     capture_drop(&c);
 }
 
@@ -442,6 +537,9 @@ int main(void)
         cmocka_unit_test(other_strengths_than_equal_ones_are_told),
         cmocka_unit_test(far_weaker_lights_are_told_from_wrong_ones),
         cmocka_unit_test(tones_that_were_taken_for_others_are_told),
+        cmocka_unit_test(few_pictures_check_nothing_and_it_is_told),
+        cmocka_unit_test(gloss_is_not_taken_for_strengths),
+        cmocka_unit_test(an_assumed_lens_is_told),
         cmocka_unit_test(another_distance_or_lens_is_named),
         cmocka_unit_test(an_inverted_mask_is_told),
     };

@@ -13,6 +13,8 @@ static const float ROUND = 0.9f;
 /* Shares of two circles along which the pictures have an edge: at most for the wrong one, at least for the right one.
  */
 static const float HARDLY = 0.2f, PLAINLY = 0.8f;
+/* Least share of a circle that was found: of balls' outlines 0.9 and more is seen, of what was none 0.3 to 0.45. */
+static const float MOSTLY = 0.6f;
 /* Distance in radii from which on two circles are different. */
 static const float ELSEWHERE = 0.08f;
 
@@ -73,10 +75,24 @@ static status check_place(const img *outlines, merlin_calibration *c)
     return OK;
 }
 
+/* Warns about a circle that was found but is hardly seen, as one through the rims of highlights in a black room. */
+static status check_outline(const img *outlines, merlin_calibration *c)
+{
+    float share = 1;
+    status s = ball_share_seen(outlines, &c->circle, &share);
+    if (s != OK || share >= MOSTLY) return s;
+    warnings_add(
+        &c->warnings, "circle_unsure",
+        "%.0f %% alone of the circle found, at %.0f, %.0f with radius %.1f, is an edge in the pictures, and lights "
+        "may be many degrees off: is it the ball's outline in calibration.png? If not, give a mask",
+        100 * (double)share, (double)c->circle.x, (double)c->circle.y, (double)c->circle.radius);
+    return OK;
+}
+
 status ball_check(const img *mask, const img *outlines, merlin_calibration *c)
 {
     check_shading(c);
-    if (!c->from_mask) return OK;
+    if (!c->from_mask) return check_outline(outlines, c);
     if (overlap(mask, &c->circle) < (double)ROUND)
         warnings_add(&c->warnings, "mask_not_round",
                      "the mask is no disc, and the circle that fits its edge, at %.0f, %.0f with radius %.1f, may not "

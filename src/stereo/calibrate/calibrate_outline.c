@@ -15,6 +15,9 @@ static const float LARGEST = 1.62f, ASIDE = 0.2f;
 static const float LEAST_ALIKE = 0.6f;
 /* Least mean step of the logarithm; and its least ratio to that slightly further in or out, otherwise it is a halo. */
 static const float LEAST_STEP = 0.03f, SHARPER = 1.6f;
+/* Least ratio of an outline's step to the least one between it and the inner circle, across so many pixels: the steps
+ * of that one's own blurred edge only fall. */
+static const float APART = 1.5f, FINELY = 1.5f;
 /* Least share of the circle in the picture. */
 static const float LEAST_WITHIN = 0.45f;
 
@@ -113,6 +116,20 @@ static bool is_outline(const img *p, const merlin_circle *c, float across)
     return here.alike > LEAST_ALIKE && fabsf(here.mean) > LEAST_STEP && fabsf(here.mean) > SHARPER * beside;
 }
 
+/* Tells whether a circle is an edge of its own, not the blur around the inner circle's. */
+static bool stands_apart(const img *p, const merlin_circle *inner, const merlin_circle *outer)
+{
+    const float gap = outer->radius - inner->radius;
+    float least = INFINITY;
+    for (float way = 0; way < gap; way += 0.5f) {
+        const float share = way / gap;
+        const merlin_circle between = {inner->x + share * (outer->x - inner->x),
+                                       inner->y + share * (outer->y - inner->y), inner->radius + way};
+        least = fminf(least, fabsf(steps_across(p, &between, FINELY).mean));
+    }
+    return fabsf(steps_across(p, outer, FINELY).mean) > APART * least;
+}
+
 bool ball_around(const img *picture, const merlin_circle *inner, merlin_circle *outer)
 {
     float across = fmaxf(2, inner->radius / 24);
@@ -124,7 +141,7 @@ bool ball_around(const img *picture, const merlin_circle *inner, merlin_circle *
         polish(picture, inner, finer, 0, outer);
         finer /= 2;
     }
-    return is_outline(picture, outer, across);
+    return is_outline(picture, outer, across) && stands_apart(picture, inner, outer);
 }
 
 bool ball_has_horizon(const img *picture, const merlin_circle *circle)

@@ -98,6 +98,7 @@ void pst_capture_see(merlin_capture *c, float field_of_view, float distance)
     const bool wanted = c->lighting == MERLIN_NEAR_LIGHTS && !pinhole_is_near(&c->camera);
     if (!(distance > 0)) distance = c->camera.distance;
     const bool usual = wanted && !(field_of_view > 0) && !(c->focal_35mm > 0);
+    c->lens_assumed = usual || (c->lens_assumed && !(field_of_view > 0));
     if (field_of_view > 0 || wanted)
         c->camera = pinhole_known(c->width, c->height, usual ? CAMERA_FOV : field_of_view, c->focal_35mm);
     c->camera.distance = distance;

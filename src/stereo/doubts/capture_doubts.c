@@ -8,6 +8,7 @@
 #include "stereo/algebra/dense.h"
 #include "stereo/doubts/light_check.h"
 #include "stereo/doubts/model_check.h"
+#include "stereo/integrate/surface_statistics.h"
 
 /* Number of pixels and values that are examined. */
 enum { SOME = 1 << 16 };
@@ -24,6 +25,10 @@ static const float behind_camera = 0.1f;
 static const float another_unit = 30;
 /* Share of the object's pixels that are saturated in half of the pictures. */
 static const double much_burnt_out = 0.05;
+
+/* Mean spread of normals in degrees from which on hardly anything checks them: 5 to 17 of most surfaces of five and
+ * more pictures, 50 to 90 of three and four, where errors of 20 degrees leave no residual. */
+static const double much_spread = 30;
 
 /* ---- lights ---- */
 
@@ -211,8 +216,27 @@ static void report_strengths(const merlin_surface *s, warnings *out)
             "may be many degrees off: state the strengths in light_intensities.txt");
 }
 
+/* Warns where hardly anything checks the normals: three values determine one, whatever is wrong with them. */
+static status check_spread(const merlin_surface *s, warnings *out)
+{
+    merlin_statistics spread = {0};
+    status result = s->spread.data ? surface_statistics(s, &s->spread, &spread) : OK;
+    if (result == OK && spread.mean > much_spread)
+        warnings_add(
+            out, "normals_unchecked",
+            "without single pictures normals would be others by %.0f degrees on average, as most of the surface "
+            "is lit in three pictures or so, which show no error of lights, exposures and tones: take more",
+            spread.mean);
+    return result;
+}
+
 static void report_solution(const merlin_capture *c, const merlin_surface *s, warnings *out)
 {
+    if (c->lens_assumed)
+        warnings_add(
+            out, "lens_assumed",
+            "nothing tells the lens, and 60 degrees were assumed, by which normals may be many degrees off: state "
+            "by --fov how wide the pictures are");
     if (c->about_object)
         warnings_add(out, "lights_have_places",
                      "the lights are listed as places about the object and were taken for directions: --near heeds "
@@ -248,7 +272,7 @@ status pst_doubts(const merlin_capture *c, const merlin_surface *s, warnings *ou
     check_mask(c, out);
     report_reading(c, out);
     report_solution(c, s, out);
-    return result;
+    return result == OK && known ? check_spread(s, out) : result;
 }
 
 status pst_doubt_pictures(const merlin_capture *c, warnings *out)

@@ -26,11 +26,16 @@ static const double most_beyond_near = 0.25;
 /* Least gain of pst_light_turn: correct axes are better than others by 0.3 and more, wrong ones worse by as much, in
  * all but one of 70 rendered captures. */
 static const double turned = 0.35;
+/* Median residual of a surface up to which its lights' strengths explain the pictures: 0.005 to 0.009 of glossy
+ * spheres, whose highlights the three-dimensional fit here takes for strengths; 0.017 and more where strengths differ.
+ */
+static const double explained = 0.012;
 /* Share of the outline where normals point steeply inward, for an object that is not hollow. */
 static const double inward = 0.4;
 
 typedef struct check {
     const merlin_capture *capture;
+    const merlin_surface *surface;
     pst_light_fit fit;
     double own, least;   /* share left unexplained by the list, and by the best three lights */
     vec3 *light, *trial; /* the lights that fit best; an arrangement */
@@ -172,6 +177,14 @@ static double find_strengths(check *c)
     return left;
 }
 
+/* Tells whether the surface leaves more of the pictures than lights of the right strengths do. */
+static bool leaves_much(const check *c)
+{
+    double left = HUGE_VAL;
+    if (c->surface->residual.data && pst_typical_residual(c->capture, c->surface, &left) != OK) return false;
+    return left > explained;
+}
+
 /* Tells whether what is wrong with the list is that it says nothing of strengths, which differ, rather than another
  * arrangement that was found. Of lights that are
  * equally strong others than theirs explain at most 0.008 more in five real captures; in these, with a third of the
@@ -180,6 +193,7 @@ static bool are_strengths(check *c)
 {
     const float *strength = c->fit.strength;
     if (c->capture->lighting != MERLIN_DISTANT_LIGHTS || c->fit.count < FEWEST_STRENGTHS) return false;
+    if (c->surface->method == MERLIN_STEREO_SEMI || !leaves_much(c)) return false;
     for (int k = 1; k < c->fit.total; k++)
         if (strength[k] != strength[0]) return false;
     if (!(c->own - c->least > plainly_less)) return false; /* no lights leave less than those */
@@ -298,7 +312,7 @@ static status check_all(check *c, warnings *out)
 
 status pst_check_lights(const merlin_capture *c, const merlin_surface *s, warnings *out)
 {
-    check all = {.capture = c};
+    check all = {.capture = c, .surface = s};
     status result = pst_light_fit_new(c, s, &all.fit);
     if (result != OK) return result;
     result = check_all(&all, out);

@@ -12,13 +12,14 @@
 
 /* Number of pixels that are solved again, up to four times as many; number of pictures; least number, as fewer explain
  * everything. */
-enum { SMALL = 200, PICTURES = 16, FEWEST = 5 };
+enum { SMALL = 200, PICTURES = 16, FEWEST = 4 };
 /* Number of pixels whose residuals tell the median of all. */
 enum { ENOUGH = 1 << 20 };
 /* Residual from which on other models are tried, and the share of it that they must stay below. Measured: in real
  * captures, and rendered ones with gloss and shadows, wrong models leave at least 0.75 of it; linear values taken for
- * sRGB leave twice as much as necessary, a distance wrong by half ten times as much. */
-static const double noticed = 0.02, plainly_less = 0.6;
+ * sRGB leave twice as much as necessary, a distance wrong by half ten times as much. Under near lights a wrong lens
+ * leaves 0.015 where the right one leaves 0.003. */
+static const double noticed = 0.02, noticed_near = 0.008, plainly_less = 0.6;
 
 typedef struct check {
     merlin_capture small;
@@ -29,9 +30,7 @@ typedef struct check {
 
 /* ---- residuals ---- */
 
-/* Computes the median residual, as outlines and cast shadows, which no model here includes, leave much in few pixels.
- */
-static status typical_residual(const merlin_capture *c, const merlin_surface *s, double *out)
+status pst_typical_residual(const merlin_capture *c, const merlin_surface *s, double *out)
 {
     const size_t pixels = (size_t)c->width * (size_t)c->height, step = pixels / ENOUGH + 1;
     size_t count = 0;
@@ -52,7 +51,7 @@ static status residual_of(const merlin_capture *c, merlin_stereo_method method, 
     status s = pst_solve(c, &(merlin_stereo_params){.method = method}, &found);
     *left = HUGE_VAL;
     if (s != OK) return s == MERLIN_BAD_INPUT ? OK : s;
-    if (found.residual.data) s = typical_residual(c, &found, left);
+    if (found.residual.data) s = pst_typical_residual(c, &found, left);
     merlin_surface_free(&found);
     return s;
 }
@@ -102,7 +101,7 @@ static double focal_of(const check *c, double degrees)
 
 static status check_lens(const check *c, double *best, double *degrees)
 {
-    static const double tried[] = {12, 18, 25, 35, 45, 60, 75};
+    static const double tried[] = {12, 18, 24, 30, 36, 45, 52, 60, 75};
     *best = c->own;
     *degrees = c->degrees;
     status s = OK;
@@ -167,21 +166,25 @@ static bool are_of_one_strength(const merlin_capture *c)
     return c->intensities_known;
 }
 
-static void report_tones(bool linear, warnings *out)
+static void report_tones(const merlin_capture *c, warnings *out)
 {
-    warnings_add(out, "other_tones", "%s",
-                 linear
-                     ? "the pictures fit their lights far better with sRGB's tones than as linear values, which "
-                       "--linear says they are, and normals may be many degrees off: leave it out"
-                     : "the pictures fit their lights far better as linear values than with sRGB's tones, and normals "
-                       "may be many degrees off: if what wrote them left their values linear, say so by --linear");
+    warnings_add(
+        out, "other_tones", "%s",
+        c->bits == 16
+            ? "the pictures fit their lights far better with sRGB's tones than as linear values, which 16 bits "
+              "are where the file says nothing of its tones, and normals may be many degrees off: save them "
+              "with an sRGB chunk or profile, or with 8 bits"
+        : c->linear ? "the pictures fit their lights far better with sRGB's tones than as linear values, which "
+                      "--linear says they are, and normals may be many degrees off: leave it out"
+                    : "the pictures fit their lights far better as linear values than with sRGB's tones, and normals "
+                      "may be many degrees off: if what wrote them left their values linear, say so by --linear");
 }
 
 void pst_warn_strengths(warnings *out)
 {
     warnings_add(out, "strengths_unequal",
-                 "the pictures fit these lights far better if they are of different strengths, which nothing says they "
-                 "are, and normals may be many degrees off: list them in light_intensities.txt, or find them by "
+                 "the pictures fit these lights far better if they are of other strengths than these, and normals "
+                 "may be many degrees off: list them in light_intensities.txt, or find them by "
                  "--method semi");
 }
 
@@ -203,11 +206,12 @@ static status check_values(check *c, const merlin_capture *of, warnings *out)
     status s = OK;
     if (of->lighting == MERLIN_DISTANT_LIGHTS && c->method != MERLIN_STEREO_SEMI && are_of_one_strength(of))
         s = check_strengths(c, &semi, &equal);
-    if (s == OK && of->bits == 8) s = with_other_tones(c, of->linear, &toned);
+    /* 16 bits are linear unless the file says otherwise */
+    if (s == OK && (of->bits == 8 || of->bits == 16)) s = with_other_tones(c, of->linear || of->bits == 16, &toned);
     if (s != OK) return s;
     const bool strengths = semi < plainly_less * equal;
     if (is_better(c, toned) && (toned < semi || !strengths))
-        report_tones(of->linear, out);
+        report_tones(of, out);
     else if (strengths)
         pst_warn_strengths(out);
     return OK;
@@ -217,22 +221,23 @@ static status check_values(check *c, const merlin_capture *of, warnings *out)
 
 /* Measures the residual of the model as it is: that of the small pictures, whose solver may miss the surface that was
  * found in the large ones, or, unless it is not noticed anyway, of these. */
-static status check_own(check *c, const merlin_capture *of, const merlin_surface *found)
+static status check_own(check *c, const merlin_capture *of, const merlin_surface *found, double limit)
 {
     double whole = HUGE_VAL;
     status s = residual_of(&c->small, c->method, &c->own);
-    if (s == OK && c->own > noticed && found->residual.data) s = typical_residual(of, found, &whole);
+    if (s == OK && c->own > limit && found->residual.data) s = pst_typical_residual(of, found, &whole);
     c->own = fmin(c->own, whole);
     return s;
 }
 
 static status check_all(check *c, const merlin_capture *of, const merlin_surface *found, warnings *out)
 {
-    status s = check_own(c, of, found);
-    if (s != OK || !(c->own > noticed) || isinf(c->own)) return s;
+    const double limit = of->lighting == MERLIN_NEAR_LIGHTS ? noticed_near : noticed;
+    status s = check_own(c, of, found, limit);
+    if (s != OK || !(c->own > limit) || isinf(c->own)) return s;
     size_t before = out->count;
     if (of->lighting == MERLIN_NEAR_LIGHTS) s = check_place(c, out);
-    if (s == OK && out->count == before) s = check_values(c, of, out);
+    if (s == OK && out->count == before && c->own > noticed) s = check_values(c, of, out);
     return s;
 }
 

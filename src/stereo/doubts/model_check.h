@@ -14,7 +14,11 @@
  * found by solving a small version of the pictures again for each. */
 status pst_check_model(const merlin_capture *c, const merlin_surface *s, warnings *out);
 
-/* Adds strengths_unequal: as what fits better is strengths that differ, of which the list says nothing. */
+/* Computes the median residual of a surface, as outlines and cast shadows, which no model here includes, leave much in
+ * few pixels; infinite without pixels. */
+status pst_typical_residual(const merlin_capture *c, const merlin_surface *s, double *out);
+
+/* Adds strengths_unequal: as what fits better is strengths other than the list's. */
 void pst_warn_strengths(warnings *out);
 
 #endif
