@@ -58,6 +58,12 @@ const char *messages_program(void)
     return program;
 }
 
+void messages_one_line(char *text)
+{
+    for (char *c = text; *c; c++)
+        if ((unsigned char)*c < ' ') *c = '?';
+}
+
 void messages_mute(void)
 {
     if (!own) return;

@@ -22,6 +22,9 @@ FILE *messages(void);
 void messages_set_program(const char *name);
 const char *messages_program(void);
 
+/* Keeps a text to one line, in place: names of files may contain line breaks. */
+void messages_one_line(char *text);
+
 /* Mute and unmute standard error for all threads; may be called from any thread, in pairs. */
 void messages_mute(void);
 void messages_unmute(void);

@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/messages.h"
+
 /* static analysis replaces it by a macro (status.h) */
 #undef fail
 #undef fail_in
@@ -16,20 +18,13 @@ enum { MESSAGE_SIZE = 1024 };
 
 static _Thread_local char message[MESSAGE_SIZE];
 
-/* Keeps the message to one line: names in a damaged file may contain line breaks. */
-static void keep_one_line(void)
-{
-    for (char *c = message; *c; c++)
-        if ((unsigned char)*c < ' ') *c = '?';
-}
-
 status fail(status s, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
     vsnprintf(message, sizeof message, format, args);
     va_end(args);
-    keep_one_line();
+    messages_one_line(message);
     return s;
 }
 
@@ -44,7 +39,7 @@ status fail_in(status s, const char *format, ...)
     /* a message that is too long loses its end */
     int room = MESSAGE_SIZE - 3 - used;
     if (used >= 0 && room > 0) snprintf(message + used, (size_t)(MESSAGE_SIZE - used), ": %.*s", room, inner);
-    keep_one_line();
+    messages_one_line(message);
     return s;
 }
 

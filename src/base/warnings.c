@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/warnings.h"
 
+#include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -20,8 +21,7 @@ void warnings_add(warnings *list, const char *code, const char *format, ...)
     va_start(args, format);
     vsnprintf(w->message, sizeof w->message, format, args);
     va_end(args);
-    for (char *c = w->message; *c; c++) /* file names may contain control characters */
-        if ((unsigned char)*c < ' ') *c = '?';
+    messages_one_line(w->message);
 }
 
 void warnings_append(warnings *list, const warnings *more)
@@ -53,7 +53,10 @@ void warnings_print(const warnings *list, const char *command, const char *subje
 {
     size_t shown = list->count < most ? list->count : most, more = list->count - shown + list->more;
     if (list->count == 0) return;
-    fprintf(messages(), "%s %s: %s: ", messages_program(), command, subject);
+    char name[PATH_MAX];
+    snprintf(name, sizeof name, "%s", subject);
+    messages_one_line(name);
+    fprintf(messages(), "%s %s: %s: ", messages_program(), command, name);
     for (size_t i = 0; i < shown; i++)
         fprintf(messages(), "%s%s", i ? "; " : "", list->at[i].message);
     if (more) fprintf(messages(), "%sand %zu more, which --json names", shown ? "; " : "", more);

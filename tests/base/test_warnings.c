@@ -46,7 +46,7 @@ static void printed(const warnings *list, size_t most, char *out, size_t size)
     fflush(stderr);
     int kept = dup(STDERR_FILENO);
     assert_true(kept >= 0 && dup2(fileno(aside), STDERR_FILENO) >= 0);
-    warnings_print(list, "estimate", "a.jpg", most);
+    warnings_print(list, "estimate", "a\n.jpg", most);
     fflush(stderr);
     assert_true(dup2(kept, STDERR_FILENO) >= 0);
     close(kept);
@@ -64,12 +64,12 @@ static void all_are_told_on_one_line_the_first_in_words(void **state)
     assert_string_equal(text, "");
     warnings_add(&list, "a", "one");
     printed(&list, 2, text, sizeof text);
-    assert_string_equal(text, "merlin estimate: a.jpg: one\n");
+    assert_string_equal(text, "merlin estimate: a?.jpg: one\n");
     warnings_add(&list, "b", "two");
     warnings_add(&list, "c", "three");
     warnings_add(&list, "d", "four");
     printed(&list, 2, text, sizeof text);
-    assert_string_equal(text, "merlin estimate: a.jpg: one; two; and 2 more, which --json names\n");
+    assert_string_equal(text, "merlin estimate: a?.jpg: one; two; and 2 more, which --json names\n");
 }
 
 static void a_full_list_counts_what_it_has_no_room_for(void **state)
@@ -82,7 +82,7 @@ static void a_full_list_counts_what_it_has_no_room_for(void **state)
     assert_int_equal(list.count, WARNINGS_MOST);
     printed(&list, 1, text, sizeof text);
     char expected[96];
-    snprintf(expected, sizeof expected, "merlin estimate: a.jpg: file 0; and %d more, which --json names\n",
+    snprintf(expected, sizeof expected, "merlin estimate: a?.jpg: file 0; and %d more, which --json names\n",
              WARNINGS_MOST + 2);
     assert_string_equal(text, expected);
 }
