@@ -136,7 +136,6 @@ typedef struct limits {
 /* Limits of the sources' strengths. */
 static const limits FREE[SOURCES] = {{0, HUGE_VAL}, {0, HUGE_VAL}, {0, HUGE_VAL}};
 static const limits BESIDE_LAMP[SOURCES] = {{0, HUGE_VAL}, {0, HUGE_VAL}, {0, MOST_OF_REST}};
-static const limits ALONE[1] = {{0, MOST_OF_ALL}};
 
 /* Minimizes |A x - b|² of x within limits (NULL: none), given AᵀA and Aᵀb, one unknown after the other. */
 static void solve(int n, double (*a)[COEFFICIENTS], const double *b, const limits *within, double *x)
@@ -299,18 +298,21 @@ static void fit_channel(fitting *f, const place *at, int c, double x[SOURCES])
     fit_strengths(f, SOURCES, BESIDE_LAMP, x);
 }
 
-/* Fits all light of one channel, as it is told, at once: how much of it is flash, and how much comes from everywhere,
- * the network knows better. */
+/* Scales all light of one channel, as it is told, to the photograph's brightness: how much of it is flash, and how much
+ * comes from everywhere, the network knows better. Sums are compared, as residuals by share of the values lean to the
+ * dark pixels where the maps do not explain the light. */
 static double fit_whole(fitting *f, float flash, int c)
 {
-    double x[SOURCES];
+    double seen = 0, told = 0;
     for (int i = 0; i < f->count; i++) {
         const spot *s = &f->spots[i];
         f->value[i] = channel_of(s->value, c);
         f->source[0][i] = flash * channel_of(s->flash, c) + channel_of(s->rest, c);
+        seen += (double)f->value[i];
+        told += (double)f->source[0][i];
     }
-    fit_strengths(f, 1, ALONE, x);
-    return x[0];
+    f->floor = FLOOR * seen / f->count;
+    return told > 0 ? fmin(seen / told, MOST_OF_ALL) : 0;
 }
 
 /* Scales the rest by channel, and adds to its coefficients, as far as it stays light. */
