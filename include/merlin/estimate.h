@@ -40,7 +40,7 @@ typedef struct merlin_hint {
     } point[MERLIN_MOST_POINTS]; /* pixels of the object */
     struct {
         int x, y, width, height;
-    } box; /* contains all of the object, as closely as possible; width 0: none */
+    } box;       /* contains all of the object, as closely as possible; width 0: none */
     int reduced; /* points and box count a file's pixels, of which so many a side became one of the photograph, as
                   * merlin_shot's reduced says: 0 or 1 for most */
 } merlin_hint;

@@ -28,8 +28,8 @@ typedef struct merlin_view_params {
     int side;           /* another value than MERLIN_VIEW_SIDE, within the other two; 0: that */
 } merlin_view_params;
 
-/* Writes the page completely or, after a failure, not at all. path: ends in .html or .htm, else MERLIN_WRONG_USE; params
- * NULL: the defaults. */
+/* Writes the page completely or, after a failure, not at all. path: ends in .html or .htm, else MERLIN_WRONG_USE;
+ * params NULL: the defaults. */
 merlin_status merlin_view_write(const merlin_maps *maps, const merlin_view_params *params, const char *path);
 
 #ifdef __cplusplus

@@ -8,7 +8,6 @@
 
 #include "base/parallel.h"
 #include "base/staging.h"
-#include "base/text/map_names.h"
 
 typedef struct running {
     const folder_batch *batch;
@@ -40,10 +39,7 @@ static status begin(const folder_batch *b, staging **out)
 {
     const size_t length = strlen(b->folder);
     *out = NULL;
-    if (!b->in_place) {
-        status s = map_names_check(b->folder);
-        return s == OK ? staging_begin(b->folder, NULL, out) : s;
-    }
+    if (!b->in_place) return staging_begin(b->folder, NULL, out);
     if (length + 1 + NAME_MAX < PATH_MAX) return OK;
     return fail(MERLIN_CANNOT_WRITE, "a path of %zu bytes is too long", length);
 }

@@ -20,7 +20,6 @@
 #include "command/options.h"
 #include "command/photos.h"
 #include "merlin/view.h"
-#include "view/view_name.h"
 
 static const char help[] =
     "usage: merlin view DIR [-o FILE] [options]\n\n"
@@ -53,8 +52,7 @@ static status parse(int *argc, char ***argv, request *r)
     };
     status s = cli_read_options(argc, argv, options);
     if (s != OK || r->help) return s;
-    s = maps_folder_take(*argc, *argv, &r->input);
-    return s == OK && r->output ? view_check_name(r->output) : s;
+    return maps_folder_take(*argc, *argv, &r->input);
 }
 
 /* ---- report ---- */

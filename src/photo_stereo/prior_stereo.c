@@ -15,8 +15,8 @@
 enum { FEWEST = 2, FEW = 4 };
 
 /* Least share of the network's slopes that a surface's have along them, and that its have in all; less in both is too
- * flat. Measured (docs/notes/several_photographs.md): 0.7 to 1.4, and 1 to 1.7, with lights that were found, 0.2 to 0.3,
- * and 0.3 to 0.7, of near ones on a ring with errors of 40 degrees. */
+ * flat. Measured (docs/notes/several_photographs.md): 0.7 to 1.4, and 1 to 1.7, with lights that were found, 0.2 to
+ * 0.3, and 0.3 to 0.7, of near ones on a ring with errors of 40 degrees. */
 static const double least_along = 0.6, least_in_all = 0.8;
 
 /* Converts a vector from the lens's space (merlin_maps_lens_place) back to the maps', in which the lens's axes are the

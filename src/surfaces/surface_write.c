@@ -7,6 +7,7 @@
 #include "base/api_needs.h"
 #include "base/file.h"
 #include "base/folder_batch.h"
+#include "base/text/map_names.h"
 #include "estimate/files/map_png.h"
 #include "estimate/files/maps_files.h"
 #include "estimate/surface/crop.h"
@@ -183,7 +184,8 @@ merlin_status merlin_surface_write(const merlin_surface *surface, const char *in
                                 .watch = {by->progress, by->progress_context, by->stop},
                                 .steps = count};
     watch_tell(&files.watch, "writing", 0);
-    s = surface_albedo(surface, &j.albedo);
+    s = by->in_place ? OK : map_names_check(folder);
+    if (s == OK) s = surface_albedo(surface, &j.albedo);
     if (s == OK) s = folder_batch_write(&files);
     img_free(&j.albedo);
     return s;

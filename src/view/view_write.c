@@ -10,7 +10,6 @@
 #include "image/resize.h"
 #include "image/write/write.h"
 #include "merlin/view.h"
-#include "view/view_name.h"
 #include "view/view_page.h"
 #include "view/view_planes.h"
 #include "view/view_scene.h"
@@ -123,6 +122,14 @@ static status check_side(int side)
                 MERLIN_VIEW_MOST_SIDE, side);
 }
 
+/* Refuses other names: a file of another kind would be lost, and no browser opens the page. */
+static status check_name(const char *path)
+{
+    static const char *const endings[] = {".html", ".htm", NULL};
+    if (file_ends_in_any(file_name_of(path), endings)) return OK;
+    return fail(MERLIN_WRONG_USE, "%s: the page's name ends in .html or .htm", path);
+}
+
 merlin_status merlin_view_write(const merlin_maps *maps, const merlin_view_params *params, const char *path)
 {
     static const merlin_view_params usual = {0};
@@ -130,7 +137,7 @@ merlin_status merlin_view_write(const merlin_maps *maps, const merlin_view_param
     page p = {.scene = NULL};
     status s = api_needs(__func__, maps && path);
     if (s == OK) s = check_side(how->side);
-    if (s == OK) s = view_check_name(path);
+    if (s == OK) s = check_name(path);
     if (s == OK) s = fill(maps, how, &p);
     if (s == OK) s = file_print(path, print_page, &p);
     page_free(&p);

@@ -7,7 +7,6 @@
 #include "capture_files.h"
 #include "merlin/calibrate.h"
 #include "png_exif.h"
-#include "stereo/calibrate/calibrate_parts.h"
 #include "stereo/methods/solve.h"
 
 enum { SIZE = 160, LIGHTS = 7 };
@@ -123,68 +122,6 @@ static void a_chrome_ball_tells_its_lights(void **state)
     assert_lights_found(MERLIN_CHROME_BALL, false, 0.5f, 1);
     write_mask();
     assert_lights_found(MERLIN_CHROME_BALL, true, 0.5f, 1);
-}
-
-/* Writes pictures of a mirror ball that mirrors a little light of the room, in front of black. */
-static void write_small_balls(float radius)
-{
-    img p;
-    assert_int_equal(img_new(&p, SIZE, SIZE, 1), OK);
-    for (int i = 0; i < LIGHTS; i++) {
-        char name[16];
-        snprintf(name, sizeof name, "%02d.png", i);
-        for (int k = 0; k < SIZE * SIZE; k++) {
-            float sum = 0;
-            for (int j = 0; j < 16; j++) {
-                const float u = ((float)(k % SIZE) + (0.5f + (float)(j % 4)) / 4 - CENTER_X) / radius;
-                const float v = (CENTER_Y - (float)k / SIZE - (0.5f + (float)(j / 4)) / 4) / radius; /* row k / SIZE */
-                const float rest = 1 - u * u - v * v;
-                if (!(rest > 0)) continue;
-                const vec3 n = {u, v, sqrtf(rest)};
-                const vec3 mirrored = {2 * n.z * n.x, 2 * n.z * n.y, 2 * n.z * n.z - 1};
-                sum += fminf(4 * expf(300 * (vec3_dot(mirrored, light(i)) - 1)) + 0.05f, 1) / 16;
-            }
-            p.data[k] = sum;
-        }
-        assert_int_equal(img_write_png(scratch_path(name), &p, IMG_LINEAR16), OK);
-    }
-    img_free(&p);
-}
-
-/* The blur around a small ball's edge is no outline around it. */
-static void a_small_balls_circle_is_its_edge(void **state)
-{
-    (void)state;
-    static const float radii[] = {11, 14, 22, 35};
-    for (size_t i = 0; i < sizeof radii / sizeof *radii; i++) {
-        merlin_calibration c;
-        write_small_balls(radii[i]);
-        assert_int_equal(merlin_calibrate(scratch, &(merlin_calibrate_params){.ball = MERLIN_CHROME_BALL}, &c), OK);
-        if (c.warnings.count) fail_msg("%s: %s", c.warnings.at[0].code, c.warnings.at[0].message);
-        assert_float_equal(c.circle.radius, radii[i], 0.6);
-        merlin_calibration_free(&c);
-    }
-}
-
-/* A circle of which a third is an edge may go through the rims of highlights. */
-static void a_circle_that_is_hardly_seen_is_doubted(void **state)
-{
-    (void)state;
-    for (int whole = 0; whole < 2; whole++) {
-        img seen;
-        merlin_calibration c = {.ball = MERLIN_CHROME_BALL, .circle = {CENTER_X, CENTER_Y, RADIUS}};
-        assert_int_equal(img_new(&seen, SIZE, SIZE, 1), OK);
-        for (int k = 0; k < SIZE * SIZE; k++) {
-            const int row = k / SIZE;
-            const float x = (float)(k % SIZE) + 0.5f - CENTER_X, y = (float)row + 0.5f - CENTER_Y;
-            const bool shown = whole || fabsf(atan2f(y, x)) < 1.05f;
-            seen.data[k] = shown && hypotf(x, y) < RADIUS ? 0.5f : 0.01f;
-        }
-        assert_int_equal(ball_check(NULL, &seen, &c), OK);
-        assert_int_equal(c.warnings.count, whole ? 0 : 1);
-        if (!whole) assert_string_equal(c.warnings.at[0].code, "circle_unsure");
-        img_free(&seen);
-    }
 }
 
 static void a_matte_ball_tells_its_lights_in_spite_of_a_highlight(void **state)
@@ -524,8 +461,6 @@ int main(void)
         in_scratch(wrong_use_of_a_calibration_is_named),
         in_scratch(both_files_are_written_or_none),
         in_scratch(a_chrome_ball_tells_its_lights),
-        in_scratch(a_small_balls_circle_is_its_edge),
-        in_scratch(a_circle_that_is_hardly_seen_is_doubted),
         in_scratch(a_matte_ball_tells_its_lights_in_spite_of_a_highlight),
         in_scratch(a_matte_ball_tells_its_lights_in_a_lit_room),
         in_scratch(what_one_channel_clips_is_no_shading),

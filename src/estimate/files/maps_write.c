@@ -8,6 +8,7 @@
 #include "base/api_needs.h"
 #include "base/file.h"
 #include "base/folder_batch.h"
+#include "base/text/map_names.h"
 #include "estimate/files/map_png.h"
 #include "estimate/files/maps_files.h"
 #include "estimate/files/overview.h"
@@ -136,7 +137,8 @@ static status write_maps(merlin_model *model, const merlin_maps *maps, const mer
     watch_tell(&files.watch, "writing", 0);
     /* before the files are written in parallel, as the network uses all processors itself */
     network *n = model_network(model, maps, MERLIN_BY_BRDF);
-    status s = overview_new(n, maps, &j->overview);
+    status s = by->in_place ? OK : map_names_check(folder);
+    if (s == OK) s = overview_new(n, maps, &j->overview);
     if (by->last) network_release(n);
     if (s == OK) s = folder_batch_write(&files);
     overview_free(&j->overview);

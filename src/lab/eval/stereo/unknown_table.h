@@ -46,7 +46,7 @@ typedef struct unknown_options {
     uint64_t seed;                   /* of rendered objects */
     size_t count;                    /* objects at most; 0: all, or UNKNOWN_RENDERED */
     int views;
-    float dim; /* least share to which pictures are exposed by chance; 0 or 1: all alike */
+    float dim;         /* least share to which pictures are exposed by chance; 0 or 1: all alike */
     bool lens_unknown; /* nothing is told of the camera, whatever the objects' is */
     bool quiet;
     int (*stopped)(void); /* asked between solutions; NULL: never */
