@@ -19,9 +19,9 @@ extern "C" {
 #endif
 
 typedef enum merlin_relighting {
-    MERLIN_BY_BRDF, /* the maps' microfacet BRDF with cast shadows, plus the network's global illumination */
-    MERLIN_BY_NETWORK, /* the relighting decoder, for lights on the frontal hemisphere: (sinθ cosφ, sinθ sinφ, cosθ - 1)
-                        */
+    MERLIN_BY_BRDF,    /* the maps' microfacet BRDF with cast shadows, plus the network's global illumination */
+    MERLIN_BY_NETWORK, /* the relighting decoder, for lights on the frontal hemisphere: (sinθ cosφ, sinθ sinφ,
+                        * cosθ - 1), or 0.5 to 2 away from (0, 0, -1) instead of 1, with an environment 0.8 to 1.25 */
     MERLIN_BY_BRDF_UNSHADOWED, /* by the BRDF without cast shadows, as in the paper */
     MERLIN_BY_BRDF_DIRECT,     /* by the BRDF with cast shadows, without the network's global illumination */
 } merlin_relighting;

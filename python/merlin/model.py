@@ -80,6 +80,11 @@ def _shot(path: PathLike) -> Any:
     return shot
 
 
+def _reduction(photo: Any) -> int:
+    """How many of a file's pixels a side became one, which points and boxes count."""
+    return int(_shot(photo).reduced) if is_path(photo) else 1
+
+
 class FoundObject:
     """Which part of a photograph is the object, as `find_object` found it; `Model.estimate` takes it as a mask."""
 
@@ -115,8 +120,7 @@ def find_object(photo: Picture, mask: Optional[Picture] = None, *, points: Optio
     points: up to 16 (x, y), pixels of the object; box: (x, y, width, height), which holds all of it. Both help the
     search, and are refused where there is a mask."""
     hint = hint_of(points, box)
-    if is_path(photo):
-        hint.reduced = _shot(photo).reduced
+    hint.reduced = _reduction(photo)
     return FoundObject(_find(*_taken(photo, mask, linear), hint))
 
 

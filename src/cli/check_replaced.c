@@ -21,7 +21,7 @@ static status check_mesh(const char *folder, const char *mesh)
     merlin_files files;
     status s = merlin_mesh_files(NULL, mesh, &files);
     for (size_t i = 0; i < files.count && s == OK; i++)
-        if (map_names_is_in(folder, files.at[i])) s = map_names_refuse(folder, files.at[i]);
+        if (map_names_is_in(folder, files.at[i])) s = map_names_refuse(folder, files.at[i], "maps.exr");
     merlin_files_free(&files);
     return s;
 }

@@ -9,12 +9,12 @@
 const char *const map_names[] = {"mask.png",  "normal.png",         "albedo.png",   "roughness.png",  "depth.png",
                                  "error.png", "reconstruction.png", "overview.png", "confidence.png", NULL};
 
-status map_names_refuse(const char *folder, const char *name)
+status map_names_refuse(const char *folder, const char *name, const char *beside)
 {
     return fail(MERLIN_CANNOT_WRITE,
-                "cannot write into %s: its %s is no earlier result, for there is no maps.exr beside it, and would be "
+                "cannot write into %s: its %s is no earlier result, for there is no %s beside it, and would be "
                 "replaced; choose another folder",
-                folder, name);
+                folder, name, beside);
 }
 
 bool map_names_is_in(const char *folder, const char *name)
@@ -30,6 +30,6 @@ status map_names_check(const char *folder)
     if (!file_is_folder(folder) || map_names_is_in(folder, "maps.exr") || map_names_is_in(folder, "report.json"))
         return OK;
     for (int i = 0; map_names[i]; i++)
-        if (map_names_is_in(folder, map_names[i])) return map_names_refuse(folder, map_names[i]);
+        if (map_names_is_in(folder, map_names[i])) return map_names_refuse(folder, map_names[i], "maps.exr");
     return OK;
 }

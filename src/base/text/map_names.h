@@ -14,8 +14,8 @@ extern const char *const map_names[];
 /* Refuses a folder that has a file of these names, but no maps.exr or report.json: it is somebody's picture, not an
  * earlier result, and would be replaced. MERLIN_CANNOT_WRITE. */
 status map_names_check(const char *folder);
-/* The same words for another file of a folder. */
-status map_names_refuse(const char *folder, const char *name);
+/* The same words for another file, and another one that would be beside it. */
+status map_names_refuse(const char *folder, const char *name, const char *beside);
 /* Tells whether a folder has a plain file of this name. */
 bool map_names_is_in(const char *folder, const char *name);
 

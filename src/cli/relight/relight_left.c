@@ -41,11 +41,8 @@ static status check_numbered(const char *folder, const char *kind, const char *e
 {
     char name[24];
     snprintf(name, sizeof name, "%s000%s", kind, ending);
-    if (!map_names_is_in(folder, name) || map_names_is_in(folder, sheet)) return OK;
-    return fail(MERLIN_CANNOT_WRITE,
-                "cannot write into %s: its %s is no earlier result, for there is no %s beside it, and would be "
-                "replaced; choose another folder",
-                folder, name, sheet);
+    return !map_names_is_in(folder, name) || map_names_is_in(folder, sheet) ? OK
+                                                                            : map_names_refuse(folder, name, sheet);
 }
 
 status relight_check_replaced(const relight_job *job)

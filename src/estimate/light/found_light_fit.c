@@ -128,17 +128,12 @@ static vec3 lit_by_lamp(const spot *s, const place *at)
 
 /* ---- strengths ---- */
 
-/* Limits of one unknown. */
-typedef struct limits {
-    double least, most;
-} limits;
+/* Largest strengths of the sources. */
+static const double FREE[SOURCES] = {HUGE_VAL, HUGE_VAL, HUGE_VAL},
+                    BESIDE_LAMP[SOURCES] = {HUGE_VAL, HUGE_VAL, MOST_OF_REST};
 
-/* Limits of the sources' strengths. */
-static const limits FREE[SOURCES] = {{0, HUGE_VAL}, {0, HUGE_VAL}, {0, HUGE_VAL}};
-static const limits BESIDE_LAMP[SOURCES] = {{0, HUGE_VAL}, {0, HUGE_VAL}, {0, MOST_OF_REST}};
-
-/* Minimizes |A x - b|² of x within limits (NULL: none), given AᵀA and Aᵀb, one unknown after the other. */
-static void solve(int n, double (*a)[COEFFICIENTS], const double *b, const limits *within, double *x)
+/* Minimizes |A x - b|² of x from 0 to `most` (NULL: any x), given AᵀA and Aᵀb, one unknown after the other. */
+static void solve(int n, double (*a)[COEFFICIENTS], const double *b, const double *most, double *x)
 {
     double change = 1;
     for (int turn = 0; turn < 200 && change > 1e-5; turn++) {
@@ -148,7 +143,7 @@ static void solve(int n, double (*a)[COEFFICIENTS], const double *b, const limit
             for (int j = 0; j < n; j++)
                 left -= j == i ? 0 : a[i][j] * x[j];
             double next = a[i][i] > 0 ? left / a[i][i] : 0;
-            if (within) next = fmin(fmax(next, within[i].least), within[i].most);
+            if (most) next = fmin(fmax(next, 0), most[i]);
             change = fmax(change, fabs(next - x[i]) / (fabs(next) + 1e-3));
             x[i] = next;
         }
@@ -177,23 +172,23 @@ static double weight_of(const fitting *f, int i, double left)
     return 1 / (scale * scale * sqrt(1 + r * r));
 }
 
-/* Sums up the equations of the first n sources, each weighted by how well the last strengths explain it. */
-static void sum_equations(const fitting *f, int n, const double x[SOURCES], bool first, double (*a)[COEFFICIENTS],
+/* Sums up the equations of all sources, each weighted by how well the last strengths explain it. */
+static void sum_equations(const fitting *f, const double x[SOURCES], bool first, double (*a)[COEFFICIENTS],
                           double b[SOURCES])
 {
     for (int i = 0; i < f->count; i++) {
-        const double weight = weight_of(f, i, first ? 0 : residual(f, n, x, i));
-        for (int s = 0; s < n; s++) {
+        const double weight = weight_of(f, i, first ? 0 : residual(f, SOURCES, x, i));
+        for (int s = 0; s < SOURCES; s++) {
             const double of = weight * (double)f->source[s][i];
             b[s] += of * (double)f->value[i];
-            for (int t = 0; t < n; t++)
+            for (int t = 0; t < SOURCES; t++)
                 a[s][t] += of * (double)f->source[t][i];
         }
     }
 }
 
-/* Fits the strengths of the first n sources to the values, and returns the mean cost of what is left. */
-static double fit_strengths(fitting *f, int n, const limits *within, double x[SOURCES])
+/* Fits the sources' strengths to the values, and returns the mean cost of what is left. */
+static double fit_strengths(fitting *f, const double most[SOURCES], double x[SOURCES])
 {
     enum { PASSES = 4 };
     double sum = 0, cost = 0;
@@ -204,11 +199,11 @@ static double fit_strengths(fitting *f, int n, const limits *within, double x[SO
         x[s] = 0;
     for (int pass = 0; pass < PASSES; pass++) {
         double a[SOURCES][COEFFICIENTS] = {{0}}, b[SOURCES] = {0};
-        sum_equations(f, n, x, pass == 0, a, b);
-        solve(n, a, b, within, x);
+        sum_equations(f, x, pass == 0, a, b);
+        solve(SOURCES, a, b, most, x);
     }
     for (int i = 0; i < f->count; i++) {
-        const double r = residual(f, n, x, i) / scale_of(f, i) / PLAUSIBLE;
+        const double r = residual(f, SOURCES, x, i) / scale_of(f, i) / PLAUSIBLE;
         cost += log1p(r * r);
     }
     return cost / f->count;
@@ -222,8 +217,8 @@ static void judge(fitting *f, place *at)
     for (int i = 0; i < f->count; i++)
         f->source[LAMP][i] = found_light_mean(lit_by_lamp(&f->spots[i], at));
     const double from_told = (double)(at->inverse - f->told_inverse);
-    at->cost = log(fit_strengths(f, SOURCES, FREE, x) + 1e-6) +
-               TOLD_DIRECTION * (1 - (double)vec3_dot(at->toward, f->told)) + TOLD_DISTANCE * from_told * from_told;
+    at->cost = log(fit_strengths(f, FREE, x) + 1e-6) + TOLD_DIRECTION * (1 - (double)vec3_dot(at->toward, f->told)) +
+               TOLD_DISTANCE * from_told * from_told;
 }
 
 /* Finds the best of nine places: as far aside as the network tells or less, and to other sides. */
@@ -295,7 +290,7 @@ static void fit_channel(fitting *f, const place *at, int c, double x[SOURCES])
         f->source[FLASH][i] = channel_of(s->flash, c);
         f->source[OTHER][i] = channel_of(s->rest, c);
     }
-    fit_strengths(f, SOURCES, BESIDE_LAMP, x);
+    fit_strengths(f, BESIDE_LAMP, x);
 }
 
 /* Scales all light of one channel, as it is told, to the photograph's brightness: how much of it is flash, and how much
