@@ -121,10 +121,11 @@ static bool stands_apart(const img *p, const merlin_circle *inner, const merlin_
 {
     const float gap = outer->radius - inner->radius;
     float least = INFINITY;
-    for (float way = 0; way < gap; way += 0.5f) {
-        const float share = way / gap;
+    const int count = (int)ceilf(2 * gap); /* each half a pixel further */
+    for (int i = 0; i < count; i++) {
+        const float share = 0.5f * (float)i / gap;
         const merlin_circle between = {inner->x + share * (outer->x - inner->x),
-                                       inner->y + share * (outer->y - inner->y), inner->radius + way};
+                                       inner->y + share * (outer->y - inner->y), inner->radius + share * gap};
         least = fminf(least, fabsf(steps_across(p, &between, FINELY).mean));
     }
     return fabsf(steps_across(p, outer, FINELY).mean) > APART * least;
