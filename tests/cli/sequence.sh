@@ -88,7 +88,7 @@ refuses 2 'several lamps want --together' "$MERLIN" relight moved --light 0,0,0 
 refuses 2 'not both' "$MERLIN" relight moved --light 0,0,0 --orbit 4
 refuses 2 'no --dome' "$MERLIN" relight moved --dome 4
 refuses 2 'merlin estimate still/frame_%04d.png, then' "$MERLIN" relight 'still/frame_%04d.png' --light 0,0,0
-refuses 1 'does not have the light\|found none' "$MERLIN" relight moved --found-light -o none
+refuses 1 'does not have the light\|no light is known' "$MERLIN" relight moved --found-light -o none
 rm moved/frame_0003/maps.exr
 refuses 1 'there are no maps in moved/frame_0003' "$MERLIN" relight moved --light 0,0,0 -o none
 absent none

@@ -23,6 +23,17 @@ static dnn_shape bias_shape(const nn_step *step)
     return (dnn_shape){1, {step->out.c}, dnnl_f32, dnnl_a};
 }
 
+/* Implementation of 1×1 convolutions by AMX that writes whole tiles of 16 pixels, in oneDNN 2.6.3, also where fewer are
+ * left: past the end of a picture of 6×6, into the next picture or tensor. It is avoided for such pictures. */
+static const char *const BY_WHOLE_TILES = "jit_1x1:avx512_core_amx";
+enum { TILE = 16 };
+
+static const char *avoided_of(const nn_step *step, dnnl_prop_kind_t kind)
+{
+    const nn_tensor *written = kind == dnnl_backward_data ? &step->in[0] : &step->out;
+    return written->h * written->w % TILE != 0 ? BY_WHOLE_TILES : NULL;
+}
+
 /* Returns the convolution with its strides and padding: (k - 1)/2 before, the rest behind, of the kernel as wide as
  * dilation makes it. */
 static dnn_convolution convolution_of(const nn_step *step, dnnl_prop_kind_t kind)
@@ -40,6 +51,7 @@ static dnn_convolution convolution_of(const nn_step *step, dnnl_prop_kind_t kind
         .gaps = {gap, gap},
         .before = {before, before},
         .behind = {behind, behind},
+        .avoided = avoided_of(step, kind),
     };
 }
 
