@@ -61,6 +61,7 @@ static const struct run {
     {"merlin-several/01-96", 0x4d79aecd24ccd6b1},
     {"merlin-several/02-96", 0xa9a8f6e47c604943},
     {"merlin-several/03-96", 0xe8f4309d85415aa3},
+    {"merlin-several/04-96", 0x3861fd79b97fd1dc},
     {"merlin-lights/01-96", 0x9b37bc59f24fbc72},
     {"merlin-lights/02-96", 0x3e76aa8b4d21b5ed},
     {"merlin-lights/03-96", 0x7202ec769df06ded},
