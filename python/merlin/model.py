@@ -81,7 +81,7 @@ def _shot(path: PathLike) -> Any:
 
 
 def _reduction(photo: Any) -> int:
-    """How many of a file's pixels a side became one, which points and boxes count."""
+    """Returns the number of a file's pixels a side that became one, which points and boxes count."""
     return int(_shot(photo).reduced) if is_path(photo) else 1
 
 

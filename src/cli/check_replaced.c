@@ -68,8 +68,7 @@ status check_inputs_kept(const char *folder, const char *photo, const char *mask
 status check_replaced(const char *folder, bool meshes)
 {
     static const char *const surface[] = {"mesh.ply", "mesh.obj", "mesh.glb", NULL};
-    if (!file_is_folder(folder) || map_names_is_in(folder, "maps.exr") || map_names_is_in(folder, "report.json"))
-        return OK;
+    if (map_names_is_free(folder)) return OK;
     status s = map_names_check(folder);
     for (int i = 0; meshes && s == OK && surface[i]; i++)
         s = check_mesh(folder, surface[i]);

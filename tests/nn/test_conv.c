@@ -437,7 +437,7 @@ static void run_small(nn_type type, float *out)
     nn_params_free(params);
 }
 
-/* By AMX, oneDNN's 1×1 convolution with a sum writes whole tiles of 16 pixels, past the last of 36. */
+/* OneDNN's 1×1 convolution with a sum writes, by AMX, whole tiles of 16 pixels, past the last of 36. */
 static void convolutions_of_small_pictures_write_no_further(void **state)
 {
     (void)state;

@@ -24,10 +24,11 @@ static void write_small_balls(float radius)
         char name[16];
         snprintf(name, sizeof name, "%02d.png", i);
         for (int k = 0; k < SIZE * SIZE; k++) {
+            const int row = k / SIZE;
             float sum = 0;
             for (int j = 0; j < 16; j++) {
                 const float u = ((float)(k % SIZE) + (0.5f + (float)(j % 4)) / 4 - CENTER_X) / radius;
-                const float v = (CENTER_Y - (float)k / SIZE - (0.5f + (float)(j / 4)) / 4) / radius; /* row k / SIZE */
+                const float v = (CENTER_Y - (float)row - (0.5f + (float)(j / 4)) / 4) / radius;
                 const float rest = 1 - u * u - v * v;
                 if (!(rest > 0)) continue;
                 const vec3 n = {u, v, sqrtf(rest)};

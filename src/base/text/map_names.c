@@ -25,10 +25,14 @@ bool map_names_is_in(const char *folder, const char *name)
     return is;
 }
 
+bool map_names_is_free(const char *folder)
+{
+    return !file_is_folder(folder) || map_names_is_in(folder, "maps.exr") || map_names_is_in(folder, "report.json");
+}
+
 status map_names_check(const char *folder)
 {
-    if (!file_is_folder(folder) || map_names_is_in(folder, "maps.exr") || map_names_is_in(folder, "report.json"))
-        return OK;
+    if (map_names_is_free(folder)) return OK;
     for (int i = 0; map_names[i]; i++)
         if (map_names_is_in(folder, map_names[i])) return map_names_refuse(folder, map_names[i], "maps.exr");
     return OK;

@@ -11,6 +11,8 @@
 /* Names of all PNGs that estimate and stereo write beside maps.exr, except meshes' textures; ended by NULL. */
 extern const char *const map_names[];
 
+/* Tells whether a folder is not there, or has an earlier result, a maps.exr or report.json, which may be replaced. */
+bool map_names_is_free(const char *folder);
 /* Refuses a folder that has a file of these names, but no maps.exr or report.json: it is somebody's picture, not an
  * earlier result, and would be replaced. MERLIN_CANNOT_WRITE. */
 status map_names_check(const char *folder);

@@ -41,8 +41,8 @@ static status check_numbered(const char *folder, const char *kind, const char *e
 {
     char name[24];
     snprintf(name, sizeof name, "%s000%s", kind, ending);
-    return !map_names_is_in(folder, name) || map_names_is_in(folder, sheet) ? OK
-                                                                            : map_names_refuse(folder, name, sheet);
+    if (!map_names_is_in(folder, name) || map_names_is_in(folder, sheet)) return OK;
+    return map_names_refuse(folder, name, sheet);
 }
 
 status relight_check_replaced(const relight_job *job)

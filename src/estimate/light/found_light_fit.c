@@ -393,9 +393,10 @@ static void put_all(fitting *f, const place *at, float code[MODEL_LIGHTS])
 /* Makes light of what the network tells of the rest, whose coefficients may be any. */
 static void hold_rest(float code[MODEL_LIGHTS])
 {
-    static const double same[3] = {1, 1, 1};
-    double none[3][COEFFICIENTS] = {{0}};
-    change_rest(same, none, code);
+    float rest[COEFFICIENTS][3];
+    model_decode_sh(code + MODEL_LIGHTS_REST, rest);
+    sh_hold_positive(rest);
+    model_encode_sh((const float(*)[3])rest, code + MODEL_LIGHTS_REST);
 }
 
 status found_light_fit(const lit_photo *of, float code[MODEL_LIGHTS])

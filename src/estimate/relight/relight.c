@@ -48,6 +48,17 @@ static status light_by_brdf(const relighter *s, const lamp *light, img *full, im
     return result;
 }
 
+/* Multiplies by a lamp's tint. All light is proportional to the lamp's, and the network is evaluated for a white one of
+ * its training power. */
+static void apply_tint(vec3 tint, img *radiance)
+{
+    if (tint.x == 1 && tint.y == 1 && tint.z == 1) return;
+    for (size_t i = 0; i < img_value_count(radiance); i += 3) {
+        float *value = radiance->data + i;
+        if (value[0] != 0 || value[1] != 0 || value[2] != 0) vec3_put(vec3_mul(vec3_of(value), tint), value);
+    }
+}
+
 static status light_by_network(network *n, const relighter *s, const lamp *light, img *full, img *low)
 {
     const vec3 way = vec3_sub(light->at, middle);
@@ -55,8 +66,8 @@ static status light_by_network(network *n, const relighter *s, const lamp *light
     illumination both = {vec3_fma(middle, 1 / distance, way),
                          s->environment ? (const float(*)[3])s->environment->sh : NULL};
     status result = network_relight(n, s->features, &both, low);
-    for (size_t i = 0; result == OK && distance != 1 && i < img_value_count(low); i++)
-        if (low->data[i] != 0) low->data[i] /= distance * distance;
+    const float share = 1 / (distance * distance);
+    if (result == OK) apply_tint(vec3_make(share, share, share), low);
     if (result == OK) result = surface_resize_image(low, &s->low.mask, &s->full.mask, full);
     /* whether enlarged or not, it continues outside the object */
     if (result == OK) multiply_mask(full, &s->full.mask);
@@ -108,17 +119,6 @@ static void expose(img *radiance, float white)
 static status light_by_lamp(network *n, const relighter *s, const lamp *light, img *full, img *low)
 {
     return s->how == MERLIN_BY_NETWORK ? light_by_network(n, s, light, full, low) : light_by_brdf(s, light, full, low);
-}
-
-/* Multiplies by a lamp's tint. All light is proportional to the lamp's, and the network is evaluated for a white one of
- * its training power. */
-static void apply_tint(vec3 tint, img *radiance)
-{
-    if (tint.x == 1 && tint.y == 1 && tint.z == 1) return;
-    for (size_t i = 0; i < img_value_count(radiance); i += 3) {
-        float *value = radiance->data + i;
-        if (value[0] != 0 || value[1] != 0 || value[2] != 0) vec3_put(vec3_mul(vec3_of(value), tint), value);
-    }
 }
 
 static bool is_plain(const lamp *light)

@@ -37,7 +37,7 @@ struct merlin_capture {
     merlin_lighting lighting;
     bool intensities_known;
     bool intensities_listed; /* whether they were measured, and stand for pictures as they are */
-    bool lens_assumed;       /* whether the camera's lens is CAMERA_FOV as nothing tells it */
+    bool lens_assumed;       /* CAMERA_FOV stands for the camera's lens, which nothing tells */
     bool about_object; /* whether positions are relative to the object; pst_place_lights converts them to the camera's
                         * space */
     bool lights_in_order; /* whether the lights' file names none of the pictures, so that they were assigned in the

@@ -8,7 +8,6 @@
 #include "stereo/algebra/dense.h"
 #include "stereo/doubts/light_check.h"
 #include "stereo/doubts/model_check.h"
-#include "stereo/integrate/surface_statistics.h"
 
 /* Number of pixels and values that are examined. */
 enum { SOME = 1 << 16 };
@@ -217,17 +216,21 @@ static void report_strengths(const merlin_surface *s, warnings *out)
 }
 
 /* Warns where hardly anything checks the normals: three values determine one, whatever is wrong with them. */
-static status check_spread(const merlin_surface *s, warnings *out)
+static void check_spread(const merlin_surface *s, warnings *out)
 {
-    merlin_statistics spread = {0};
-    status result = s->spread.data ? surface_statistics(s, &s->spread, &spread) : OK;
-    if (result == OK && spread.mean > much_spread)
+    double sum = 0;
+    size_t count = 0;
+    for (size_t i = 0; s->spread.data && i < img_value_count(&s->mask); i++) {
+        if (!(s->mask.data[i] > 0.5f)) continue;
+        sum += (double)s->spread.data[i];
+        count++;
+    }
+    if (sum > much_spread * (double)count)
         warnings_add(
             out, "normals_unchecked",
             "without single pictures normals would be others by %.0f degrees on average, as most of the surface "
             "is lit in three pictures or so, which show no error of lights, exposures and tones: take more",
-            spread.mean);
-    return result;
+            sum / (double)count);
 }
 
 static void report_solution(const merlin_capture *c, const merlin_surface *s, warnings *out)
@@ -272,7 +275,8 @@ status pst_doubts(const merlin_capture *c, const merlin_surface *s, warnings *ou
     check_mask(c, out);
     report_reading(c, out);
     report_solution(c, s, out);
-    return result == OK && known ? check_spread(s, out) : result;
+    if (known) check_spread(s, out);
+    return result;
 }
 
 status pst_doubt_pictures(const merlin_capture *c, warnings *out)

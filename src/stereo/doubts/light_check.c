@@ -193,10 +193,11 @@ static bool are_strengths(check *c)
 {
     const float *strength = c->fit.strength;
     if (c->capture->lighting != MERLIN_DISTANT_LIGHTS || c->fit.count < FEWEST_STRENGTHS) return false;
-    if (c->surface->method == MERLIN_STEREO_SEMI || !leaves_much(c)) return false;
+    if (c->surface->method == MERLIN_STEREO_SEMI) return false;
     for (int k = 1; k < c->fit.total; k++)
         if (strength[k] != strength[0]) return false;
     if (!(c->own - c->least > plainly_less)) return false; /* no lights leave less than those */
+    if (!leaves_much(c)) return false;
     const double left = find_strengths(c);
     return c->own - left > plainly_less && c->best - c->least > times_less * (left - c->least);
 }

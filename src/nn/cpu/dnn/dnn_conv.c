@@ -28,8 +28,19 @@ static dnn_shape bias_shape(const nn_step *step)
 static const char *const BY_WHOLE_TILES = "jit_1x1:avx512_core_amx";
 enum { TILE = 16 };
 
+/* Tells whether oneDNN's gradient may differ from run to run. With fewer than 16 channels, the weights' gradient of
+ * oneDNN 2.6.3's 1×1 convolution with a stride differs by up to a quarter between runs on the same numbers, probably
+ * because it packs pixels by 16 channels into the next thread's part. To be safe, channel counts that leave a remainder
+ * are computed otherwise. */
+static bool differs_from_run_to_run(const nn_step *step)
+{
+    return step->at.kernel == 1 && step->at.stride > 1 && step->in[0].c % 16 != 0;
+}
+
+/* Returns a part of the name of implementations that are wrong for a convolution; NULL: none is known. */
 static const char *avoided_of(const nn_step *step, dnnl_prop_kind_t kind)
 {
+    if (kind == dnnl_backward_weights) return differs_from_run_to_run(step) ? "1x1" : NULL;
     const nn_tensor *written = kind == dnnl_backward_data ? &step->in[0] : &step->out;
     return written->h * written->w % TILE != 0 ? BY_WHOLE_TILES : NULL;
 }
@@ -94,22 +105,12 @@ static status describe_data(nn_step *step, dnn_conv_state *state, const dnn_call
     return dnn_describe(&state->data, step->context, &wanted);
 }
 
-/* Tells whether oneDNN's gradient may differ from run to run. With fewer than 16 channels, the weights' gradient of
- * oneDNN 2.6.3's 1×1 convolution with a stride differs by up to a quarter between runs on the same numbers, probably
- * because it packs pixels by 16 channels into the next thread's part. To be safe, channel counts that leave a remainder
- * are computed otherwise. */
-static bool differs_from_run_to_run(const nn_step *step)
-{
-    return step->at.kernel == 1 && step->at.stride > 1 && step->in[0].c % 16 != 0;
-}
-
 static status describe_weights(nn_step *step, dnn_conv_state *state, const dnn_call *hint)
 {
     dnn_convolution wanted = convolution_of(step, dnnl_backward_weights);
     wanted.weights = any_weights(step, NN_FLOAT32);
     wanted.has_bias = state->has_bias;
     wanted.hint = hint;
-    wanted.avoided = differs_from_run_to_run(step) ? "1x1" : NULL;
     return dnn_describe(&state->weights, step->context, &wanted);
 }
 
