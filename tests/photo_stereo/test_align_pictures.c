@@ -13,7 +13,7 @@
 #include "photo_stereo/align_pictures.h"
 #include "relief.h"
 
-enum { SIZE = 96, LIGHTS = 6 };
+enum { SIZE = 96, LIGHTS = 6, MANY = 16 };
 static const int dx[LIGHTS] = {0, 3, -4, 0, 2, 0}, dy[LIGHTS] = {0, -2, 1, 5, 2, 0};
 
 /* Moves a picture's content to the right and down. */
@@ -32,17 +32,23 @@ static void move(merlin_capture *c, int k, int x, int y)
     free(to);
 }
 
-static void make(int channels, merlin_capture *c)
+/* The first ones of many lights are near the axis. */
+static void make_under(int lights, int channels, merlin_capture *c)
 {
-    const relief sphere = {.size = SIZE, .lights = LIGHTS, .channels = channels, .exposure = 1.5f};
+    const relief sphere = {.size = SIZE, .lights = lights, .channels = channels, .exposure = 1.5f};
     relief_capture(&sphere, c);
     /* painted, as few real objects are plain */
-    for (int k = 0; k < LIGHTS; k++)
+    for (int k = 0; k < lights; k++)
         for (int i = 0; i < SIZE * SIZE * channels; i++) {
             const int across = i / channels % SIZE / 7, down = i / channels / SIZE / 9;
             if (across * across * down % 3 == 1 || across * down % 5 == 2)
                 c->picture[k].wide[i] = (uint16_t)(c->picture[k].wide[i] / 2);
         }
+}
+
+static void make(int channels, merlin_capture *c)
+{
+    make_under(LIGHTS, channels, c);
 }
 
 static void still_pictures_stay(void **state)
@@ -108,6 +114,41 @@ static void what_moved_too_far_is_refused(void **state)
     capture_drop(&c);
 }
 
+/* Moves all pictures by up to this far, each to another place, and returns what align_pictures says. */
+static status align_all_moved(int far, picture_shifts *shifts)
+{
+    static const int side[LIGHTS][2] = {{-6, 5}, {6, -6}, {-5, -6}, {6, 6}, {-6, 0}, {5, -5}};
+    merlin_capture c, still, aligned;
+    make_under(MANY, 3, &c);
+    make_under(MANY, 3, &still);
+    c.count = LIGHTS;
+    for (int k = 0; k < LIGHTS; k++)
+        move(&c, k, side[k][0] * far / 6, side[k][1] * far / 6);
+    move(&still, 1, side[0][0] * far / 6, side[0][1] * far / 6);
+    status s = align_pictures(&c, &aligned, shifts);
+    for (int j = 16; s == OK && j < SIZE - 16; j++) {
+        const size_t from = (size_t)(j * SIZE + 16) * 3;
+        assert_memory_equal(aligned.picture[1].wide + from, still.picture[1].wide + from,
+                            sizeof(uint16_t) * (SIZE - 32) * 3);
+    }
+    if (s == OK) align_pictures_free(&c, &aligned);
+    c.count = MANY;
+    capture_drop(&c);
+    capture_drop(&still);
+    return s;
+}
+
+/* The sum of the others is a blur then. */
+static void pictures_that_all_moved_come_back(void **state)
+{
+    (void)state;
+    picture_shifts shifts;
+    if (align_all_moved(6, &shifts) != OK) fail_msg("%s", status_message());
+    assert_int_equal(shifts.moved, LIGHTS - 1);
+    assert_int_equal(align_all_moved(12, &shifts), MERLIN_BAD_INPUT);
+    assert_non_null(strstr(status_message(), "the object moved by about"));
+}
+
 /* Two pictures are lit in different places, which may be alike by chance if one is moved. */
 static void two_pictures_under_far_lights_did_not_move(void **state)
 {
@@ -152,6 +193,21 @@ static void what_is_lit_elsewhere_did_not_move(void **state)
     capture_drop(&c);
 }
 
+/* What is alike in all pictures, as a dark ball's highlight is, travels with the lamp. */
+static void a_highlight_that_travels_is_no_move(void **state)
+{
+    (void)state;
+    static const int by[LIGHTS] = {0, 14, 28, 14, 0, 28};
+    merlin_capture c, aligned;
+    picture_shifts shifts;
+    make(1, &c);
+    for (int k = 0; k < LIGHTS; k++)
+        keep_square(&c, k, 24, 16, by[k]);
+    if (align_pictures(&c, &aligned, &shifts) != OK) fail_msg("%s", status_message());
+    align_pictures_free(&c, &aligned);
+    capture_drop(&c);
+}
+
 static void one_picture_has_nothing_to_fit(void **state)
 {
     (void)state;
@@ -173,7 +229,9 @@ int main(void)
         cmocka_unit_test(still_pictures_stay),
         cmocka_unit_test(what_moved_comes_back),
         cmocka_unit_test(what_moved_too_far_is_refused),
+        cmocka_unit_test(pictures_that_all_moved_come_back),
         cmocka_unit_test(what_is_lit_elsewhere_did_not_move),
+        cmocka_unit_test(a_highlight_that_travels_is_no_move),
         cmocka_unit_test(two_pictures_under_far_lights_did_not_move),
         cmocka_unit_test(one_picture_has_nothing_to_fit),
     };
