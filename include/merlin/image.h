@@ -23,7 +23,8 @@ merlin_status merlin_image_read(const char *path, merlin_image *color, merlin_im
 /* Reads coverage, 1 channel in [0, 1]: the file's alpha unless that is constant, else the greater of two values,
  * whatever they are, else white on black. Areas of more than two values are MERLIN_BAD_INPUT. */
 merlin_status merlin_mask_read(const char *path, merlin_image *mask);
-/* Writes 8-bit sRGB, with values clamped to [0, 1]; path ends in .png, or in .jpg (3 channels, high quality). */
+/* Writes 8-bit sRGB, with values clamped to [0, 1]; path ends in .png, or in .jpg (3 channels, high quality).
+ * MERLIN_BAD_INPUT for NaN, which has no colour, as from whatever else writes an image. */
 merlin_status merlin_image_write(const char *path, const merlin_image *image);
 void merlin_image_free(merlin_image *image);
 

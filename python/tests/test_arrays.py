@@ -184,6 +184,20 @@ def test_a_picture_is_written_and_read(tmp_path):
         merlin.write_image(tmp_path / "missing" / "a.png", image)
 
 
+def test_nan_is_no_picture(tmp_path):
+    """Neither in a file nor in its bytes; pixels to show are black there."""
+    image = np.ones((4, 6, 3))
+    image[2, 5, 1] = np.nan
+    for wrong in (lambda: merlin.write_image(tmp_path / "a.png", image), lambda: merlin.encode_image(image),
+                  lambda: merlin.write_animation(tmp_path / "a.gif", [image]),
+                  lambda: merlin.write_sheet(tmp_path / "s.png", {"a": image}),
+                  lambda: merlin.write_mask(tmp_path / "m.png", image[:, :, 1])):
+        with pytest.raises(merlin.BadInputError, match="NaN.* 5,2"):
+            wrong()
+    assert not list(tmp_path.iterdir())
+    assert merlin.to_pixels(image)[2, 5, 1] == 0
+
+
 def test_pictures_for_people_are_written(tmp_path):
     """Sheets, animations, bytes, masks."""
     image = np.random.default_rng(3).random((20, 30, 3))

@@ -92,6 +92,18 @@ void img_add(const img *part, img *sum)
         if (part->data[i] != 0) sum->data[i] += part->data[i];
 }
 
+status img_check_numbers(const img *image)
+{
+    const size_t count = img_value_count(image);
+    for (size_t i = 0; i < count; i++) {
+        if (!isnan(image->data[i])) continue;
+        const size_t pixel = i / (size_t)image->channels, width = (size_t)image->width;
+        return fail(MERLIN_BAD_INPUT, "the image is not a number (NaN) at %zu,%zu (column, row)", pixel % width,
+                    pixel / width);
+    }
+    return OK;
+}
+
 double img_mean_within(const img *a, const img *mask)
 {
     size_t count = 0;

@@ -45,6 +45,10 @@ static inline int img_beside(int width, int height, size_t pixel, size_t to[4])
 /* Sets values that are not finite or negative, which no radiance is, to 0. */
 void img_zero_invalid(img *image);
 
+/* MERLIN_BAD_INPUT with the first place of a value that is NaN, which has no colour. Infinite ones are white or black.
+ */
+status img_check_numbers(const img *image);
+
 /* Returns the mean of a 1-channel image where the mask, of the same size, is above one half; 0 if it is nowhere. */
 double img_mean_within(const img *a, const img *mask);
 

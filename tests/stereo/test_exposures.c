@@ -45,10 +45,17 @@ static void equal_or_unknown_exposures_change_nothing(void **state)
     assert_float_equal(c.light[2].intensity[0], 1, 0);
     assert_null(warnings_find(&c.noticed, "exposures_differ"));
     pst_capture_free(&c);
+    write_flat("b.png", 6, 4, 3, 0.5f, IMG_LINEAR16);
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    assert_null(warnings_find(&c.noticed, "exposures_unknown"));
+    pst_capture_free(&c);
     three_exposed(1, 2, 3);
     write_flat("b.png", 6, 4, 3, 0.5f, IMG_LINEAR16);
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
     assert_float_equal(c.light[2].intensity[0], 1, 0);
+    const warning *unknown = warnings_find(&c.noticed, "exposures_unknown");
+    assert_non_null(unknown);
+    assert_non_null(strstr(unknown->message, "up to 3 times as much as others, but b.png has no exposure"));
     pst_capture_free(&c);
     three_exposed(1, 2, 20000); /* no camera's */
     write_exposed("ambient.png", 0.1f, 1);

@@ -17,7 +17,8 @@ static status check_image(const merlin_image *image)
 {
     const bool sound =
         image->data && image->width > 0 && image->height > 0 && (image->channels == 1 || image->channels == 3);
-    return sound ? OK : fail(MERLIN_WRONG_USE, "the image is empty, or has neither 1 nor 3 channels");
+    return sound ? img_check_numbers(image)
+                 : fail(MERLIN_WRONG_USE, "the image is empty, or has neither 1 nor 3 channels");
 }
 
 merlin_status merlin_image_resize(const merlin_image *image, int width, int height, merlin_image *out)
@@ -101,6 +102,7 @@ merlin_status merlin_animation_new(int width, int height, int most, merlin_anima
 merlin_status merlin_animation_add(merlin_animation *animation, const merlin_image *frame)
 {
     status s = api_needs(__func__, animation && frame);
+    if (s == OK) s = check_image(frame);
     return s == OK ? img_animation_add(&animation->frames, frame) : s;
 }
 

@@ -41,7 +41,8 @@ typedef struct reading {
     float *brightest;     /* brightest float of every picture */
     float *exposure;      /* of every picture (exif.h); NULL unless all are known */
     float ambient_exposure;
-    float exposure_ratio; /* of the largest exposure to the least; 1 unless all are known */
+    float exposure_ratio;           /* of the largest known exposure to the least; 1 if that is absurd */
+    int unexposed, unexposed_first; /* number of pictures whose exposure is not known, and the first of them */
     merlin_capture *into;
 } reading;
 
@@ -344,23 +345,38 @@ static status read_exposures(reading *r, const merlin_capture *c)
 {
     static const float absurd = 1000;
     float least = HUGE_VALF, most = 0;
-    bool all = true;
     status s = r->ambient_path ? read_exposure(r->ambient_path, &r->ambient_exposure) : OK;
     r->exposure = calloc((size_t)c->count, sizeof *r->exposure);
     if (!r->exposure) return fail(MERLIN_NO_MEMORY, "no memory for %d exposures", c->count);
-    for (int i = 0; i < c->count && s == OK && all; i++) {
+    for (int i = 0; i < c->count && s == OK; i++) {
         char *path = path_of(r, c->name[i]);
         s = read_exposure(path, &r->exposure[i]);
-        least = fminf(least, r->exposure[i]);
-        most = fmaxf(most, r->exposure[i]);
-        all = r->exposure[i] > 0 && most <= absurd * least;
         free(path);
+        if (r->exposure[i] > 0) {
+            least = fminf(least, r->exposure[i]);
+            most = fmaxf(most, r->exposure[i]);
+        } else if (r->unexposed++ == 0) {
+            r->unexposed_first = i;
+        }
     }
-    r->exposure_ratio = all ? most / least : 1;
-    if (all) return s;
+    const bool sound = most > 0 && most <= absurd * least;
+    r->exposure_ratio = sound ? most / least : 1;
+    if (sound && r->unexposed == 0) return s;
     free(r->exposure);
     r->exposure = NULL;
     return s;
+}
+
+static void note_unexposed(const reading *r, merlin_capture *c)
+{
+    char others[48] = "";
+    if (r->unexposed > 1) snprintf(others, sizeof others, " and %d more", r->unexposed - 1);
+    warnings_add(
+        &c->noticed, "exposures_unknown",
+        "by their EXIF some pictures were exposed up to %.3g times as much as others, but %s%s %s no exposure, "
+        "so that nothing is evened out, and normals may be many degrees off: keep the EXIF of all, or list the "
+        "strengths in light_intensities.txt",
+        (double)r->exposure_ratio, c->name[r->unexposed_first], others, r->unexposed > 1 ? "have" : "has");
 }
 
 /* Takes exposures that differ for strengths of the lights: values are divided by either. */
@@ -369,6 +385,10 @@ static void even_out(const reading *r, merlin_capture *c)
     static const float differ = 1.02f;
     double sum = 0;
     if (c->intensities_listed || !(r->exposure_ratio > differ)) return;
+    if (!r->exposure) {
+        note_unexposed(r, c);
+        return;
+    }
     for (int i = 0; i < c->count; i++)
         sum += (double)r->exposure[i];
     for (int i = 0; i < c->count; i++)
