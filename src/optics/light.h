@@ -21,6 +21,9 @@
 /* Smallest squared distance to a light; a light inside the surface is not infinitely bright. */
 #define LIGHT_MIN_DISTANCE2 ((real)1e-6)
 
+/* The middle of an object in camera space: it is scaled to stand here (docs/conventions.md). */
+static const vec3 object_middle = {0, 0, -1};
+
 /* A lamp. A near one emits power Φ from a position. A distant one's light is parallel, and everywhere as bright as a
  * near one's at distance 1: at the object's centre it equals a near one on the frontal hemisphere. */
 typedef struct lamp {

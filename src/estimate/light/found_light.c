@@ -9,7 +9,6 @@
 #include "optics/latlong.h"
 #include "optics/sh.h"
 
-static const vec3 middle = {0, 0, -1};
 /* Least probability for a lamp to count; largest distance, beyond which its light is parallel; and the share of the
  * flash from which on there is no other light. */
 static const float LEAST_SURE = 0.5f, FARTHEST = 20, FLASH_ALONE = 0.93f;
@@ -59,7 +58,7 @@ bool found_light_lamp(const merlin_found_light *light, lamp *out)
     const vec3 toward = vec3_of(light->lamp);
     if (!light->known || !(vec3_length(toward) > 0)) return false;
     const float far = light->lamp_distance;
-    *out = far > 0 ? lamp_at(vec3_fma(middle, far, toward)) : lamp_toward(toward);
+    *out = far > 0 ? lamp_at(vec3_fma(object_middle, far, toward)) : lamp_toward(toward);
     /* the strength in the object's middle, whatever the distance */
     out->tint = vec3_scale(vec3_of(light->lamp_strength), far > 0 ? far * far : 1);
     return true;
@@ -153,7 +152,7 @@ const env_map *found_lights_rest(const found_lights *l)
 void found_lights_turn(found_lights *l, float degrees)
 {
     for (int i = l->fixed; i < l->count; i++) {
-        const vec3 about = l->lamps[i].distant ? vec3_make(0, 0, 0) : middle;
+        const vec3 about = l->lamps[i].distant ? vec3_make(0, 0, 0) : object_middle;
         l->lamps[i].at = vec3_add(about, turned(vec3_sub(l->lamps[i].at, about), degrees));
     }
     if (found_lights_rest(l)) env_map_turn(&l->rest, degrees);

@@ -28,8 +28,6 @@ static const double MOST_OF_REST = 4, MOST_OF_ALL = 16;
 /* So far aside the network tells a lamp's direction as well as this fit. */
 static const float TRUSTED = 70 * DEGREE;
 
-static const vec3 middle = {0, 0, -1};
-
 typedef struct spot {
     shade_input in;
     vec3 value, flash, rest; /* radiance; that under the flash at strength 1, and under the network's rest */
@@ -121,7 +119,7 @@ static vec3 lit_by_lamp(const spot *s, const place *at)
 {
     shade_input in = s->in;
     const float from_middle = found_light_distance(at->inverse), distance = from_middle > 0 ? from_middle : 1;
-    in.light = vec3_fma(from_middle > 0 ? middle : vec3_scale(in.ray, in.depth), distance, at->toward);
+    in.light = vec3_fma(from_middle > 0 ? object_middle : vec3_scale(in.ray, in.depth), distance, at->toward);
     in.power = LIGHT_POWER * distance * distance;
     return vec3_scale(shade_point(&in), s->visible);
 }

@@ -15,8 +15,6 @@
 #include "optics/blackbody.h"
 #include "optics/camera.h"
 
-static const vec3 middle = {0, 0, -1};
-
 merlin_lamp merlin_lamp_at(float x, float y, float z)
 {
     return lamp_public(lamp_at(vec3_make(x, y, z)));
@@ -43,7 +41,7 @@ void merlin_dome_direction(int i, int count, float direction[3])
 merlin_lamp merlin_dome_lamp(int i, int count, float near)
 {
     const vec3 direction = dome_direction(i, count);
-    return lamp_public(near > 0 ? lamp_at(vec3_fma(middle, near, direction)) : lamp_toward(direction));
+    return lamp_public(near > 0 ? lamp_at(vec3_fma(object_middle, near, direction)) : lamp_toward(direction));
 }
 
 static const real ORBIT_TILT = (real)0.87; /* 50 degrees from the optical axis */
@@ -118,7 +116,7 @@ static lamp listed(const light_list *list, size_t i, float near)
     const vec3 direction = light_list_direction(list, i);
     lamp l = lamp_at(list->at[i]);
     if (list->about_object || list->angles)
-        l = near > 0 ? lamp_at(vec3_fma(middle, near, direction)) : lamp_toward(direction);
+        l = near > 0 ? lamp_at(vec3_fma(object_middle, near, direction)) : lamp_toward(direction);
     if (list->intensity) l.tint = list->intensity[i];
     return l;
 }

@@ -15,7 +15,6 @@ enum { SHADOW_SIDE = 512 };
  * of its training's were; and, beside an environment, whose light it does not part from the lamp's, by one unchanged.
  */
 static const float NEAREST = 0.5f, FARTHEST = 2, LITTLE_NEARER = 0.8f, LITTLE_FARTHER = 1.25f;
-static const vec3 middle = {0, 0, -1};
 
 /* Multiplies by the mask. Zeros are not written to, here and below (image.h). */
 static void multiply_mask(img *image, const img *mask)
@@ -61,9 +60,9 @@ static void apply_tint(vec3 tint, img *radiance)
 
 static status light_by_network(network *n, const relighter *s, const lamp *light, img *full, img *low)
 {
-    const vec3 way = vec3_sub(light->at, middle);
+    const vec3 way = vec3_sub(light->at, object_middle);
     const float distance = s->environment ? 1 : vec3_length(way);
-    illumination both = {vec3_fma(middle, 1 / distance, way),
+    illumination both = {vec3_fma(object_middle, 1 / distance, way),
                          s->environment ? (const float(*)[3])s->environment->sh : NULL};
     status result = network_relight(n, s->features, &both, low);
     const float share = 1 / (distance * distance);
@@ -135,9 +134,9 @@ static status dark(const relighter *s, img *full, img *low)
 /* Refuses lamps that are not where those of the relighting decoder's training were. */
 static status check_place(vec3 at, bool environment)
 {
-    const float distance = vec3_length(vec3_sub(at, middle));
+    const float distance = vec3_length(vec3_sub(at, object_middle));
     const float least = environment ? LITTLE_NEARER : NEAREST, most = environment ? LITTLE_FARTHER : FARTHEST;
-    if (distance >= least && distance <= most && at.z >= middle.z) return OK;
+    if (distance >= least && distance <= most && at.z >= object_middle.z) return OK;
     return fail(
         MERLIN_WRONG_USE,
         "the relighting decoder knows lamps in front of the object (z from -1 on), %g to %g away from 0,0,-1%s, "

@@ -208,14 +208,13 @@ static nfps_light light_known(const train_lamp *of, rng *r)
 
 static nfps_light light_estimated(const train_lamp *of, rng *r)
 {
-    static const vec3 middle = {0, 0, -1};
     const vec3 error = vec3_make(rng_normal(r), rng_normal(r), rng_normal(r));
     const float factor = expf(ESTIMATED_DISTANCE * rng_normal(r));
-    const vec3 way = of->distant ? of->at : vec3_sub(of->at, middle);
+    const vec3 way = of->distant ? of->at : vec3_sub(of->at, object_middle);
     const float far = vec3_length(way);
     const vec3 toward = vec3_normalize(vec3_fma(vec3_scale(way, 1 / far), ESTIMATED_DIRECTION, error));
     if (of->distant) return (nfps_light){.at = toward, .distant = true};
-    return (nfps_light){.at = vec3_fma(middle, far * factor, toward)};
+    return (nfps_light){.at = vec3_fma(object_middle, far * factor, toward)};
 }
 
 /* Exposes a picture: a light's strength, a sensor that saturates at `white`, and its noise. */
