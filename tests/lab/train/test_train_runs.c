@@ -87,6 +87,8 @@ static const struct run {
     {"merlin-any/10-256", 0x8465c7b5d22c5a02},
     {"merlin-any/11-128", 0xfe26dda258a028c9},
     {"merlin-any/12-256", 0xedec69fba1d8cd03},
+    {"merlin-any/13-128", 0x4e31cd54213af74d},
+    {"merlin-any/14-256", 0x56e84429cefd1f20},
 };
 enum { RUNS = sizeof runs / sizeof *runs };
 
