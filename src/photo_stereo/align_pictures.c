@@ -15,8 +15,8 @@ enum { COARSEST = 128, FINEST = 1024, FIRST_REACH = 6, REACH = 2, PASSES = 4 };
  * move has a share of 0.62. */
 static const double clearly = 0.6, perhaps = 0.85;
 
-/* Finds the shift with which a picture's edges are most like the others'. */
-static void find_shift(edge_level *l, int k, int reach)
+/* Finds the shift with which a picture's edges are most like the others'. share: of what the correlation lacks. */
+static void find_shift(edge_level *l, int k, int reach, double share)
 {
     edge_trials t = {.level = l, .picture = k, .reach = reach, .start = l->by[k]};
     const double unmoved = edge_level_likeness(l, k, (shift){0, 0});
@@ -28,17 +28,18 @@ static void find_shift(edge_level *l, int k, int reach)
         best = t.likeness[i];
         l->by[k] = edge_trials_at(&t, i);
     }
-    if (best < edges_alike || 1 - best > (l->finest ? clearly : perhaps) * (1 - unmoved)) l->by[k] = (shift){0, 0};
+    if (best < edges_alike || 1 - best > share * (1 - unmoved)) l->by[k] = (shift){0, 0};
 }
 
 /* Finds the shifts at one size: without earlier ones first of each picture from those before it, then of each from all
  * others. One after another, as two that look for each other at once would change places. */
-static status find_level_shifts(edge_level *l)
+static void find_level_shifts(edge_level *l, bool coarsest, bool finest)
 {
     const int count = l->capture->count;
+    const double share = finest ? clearly : perhaps;
     edge_level_add(l, 0, 1);
     for (int k = 1; k < count; k++) {
-        if (l->coarsest) find_shift(l, k, FIRST_REACH);
+        if (coarsest) find_shift(l, k, FIRST_REACH, share);
         edge_level_add(l, k, 1);
     }
     bool changed = true;
@@ -48,12 +49,20 @@ static status find_level_shifts(edge_level *l)
         for (int k = 0; k < count; k++) {
             const shift before = l->by[k];
             edge_level_add(l, k, -1);
-            find_shift(l, k, pass ? 1 : REACH);
+            find_shift(l, k, pass ? 1 : REACH, share);
             edge_level_add(l, k, 1);
             changed |= before.x != l->by[k].x || before.y != l->by[k].y;
         }
     }
-    return OK;
+}
+
+static status find_shifts_at(const merlin_capture *c, int longest, bool coarsest, bool finest, shift *by)
+{
+    edge_level l;
+    status s = edge_level_new(c, by, longest, &l);
+    if (s == OK) find_level_shifts(&l, coarsest, finest);
+    edge_level_free(&l);
+    return s;
 }
 
 static void scale_shifts(shift *by, int count, int to, int from)
@@ -62,8 +71,7 @@ static void scale_shifts(shift *by, int count, int to, int from)
         by[k] = (shift){by[k].x * to / from, by[k].y * to / from};
 }
 
-/* Finds the shifts in pixels of the finest size, which is returned. by: those that
- * far_pictures_refuse has found. */
+/* Finds the shifts in pixels of the finest size, which is returned. by: those that far_pictures_refuse has found. */
 static status find_shifts(const merlin_capture *c, shift *by, int *finest)
 {
     const int longer = edge_longer_side(c);
@@ -72,14 +80,12 @@ static status find_shifts(const merlin_capture *c, shift *by, int *finest)
     while (longest > COARSEST)
         longest = (longest + 1) / 2;
     scale_shifts(by, c->count, longest, far_pictures_side(c));
-    edge_level l = {.capture = c, .by = by, .coarsest = true, .finest = longest == *finest};
-    status s = edge_level_run(&l, longest, find_level_shifts);
+    status s = find_shifts_at(c, longest, true, longest == *finest, by);
     while (s == OK && longest < *finest) {
         const int next = 2 * longest < *finest ? 2 * longest : *finest;
         scale_shifts(by, c->count, next, longest);
         longest = next;
-        l = (edge_level){.capture = c, .by = by, .finest = longest == *finest};
-        s = edge_level_run(&l, longest, find_level_shifts);
+        s = find_shifts_at(c, longest, false, longest == *finest, by);
     }
     return s;
 }

@@ -20,9 +20,10 @@ typedef struct picture_shifts {
 
 /* Makes a capture whose pictures lie as the first one does: it shares with the original all that is not a picture that
  * had to be moved. What comes from beyond the edges is black. Edges are compared, as light changes all else: of each
- * picture with those of all others, within the mask and a margin, or everywhere without one. A shift is at most a
- * twentieth of the longer side, and none unless another is clearly better. MERLIN_BAD_INPUT if a picture plainly moved
- * further, up to a quarter. */
+ * picture with those of all others, within the mask and a margin, or everywhere without one. A picture
+ * that moved from where the others are is shifted by at most a twentieth of the longer side; if all moved, no two by
+ * more than an eighth from each other; and none unless it is clearly better so. MERLIN_BAD_INPUT if one plainly moved
+ * further (far_pictures.h). */
 status align_pictures(const merlin_capture *c, merlin_capture *out, picture_shifts *shifts);
 void align_pictures_free(const merlin_capture *c, merlin_capture *aligned);
 

@@ -3,6 +3,7 @@
 
 #include <limits.h>
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
 
 /* Longer side of the pictures of edges in which shifts are searched that are too large to be undone, and up to where
@@ -22,6 +23,15 @@ static const double aside = 0.02;
  * distance of two pictures that are both within a twentieth of one place. */
 static const double extent = 0.9, alike_of_three = 0.35;
 enum { AGREED = 1, MOST_APART = 2 * FAR_SIDE / 20 + 2 };
+
+/* A picture that moved too far. */
+typedef struct far_move {
+    int picture; /* -1: none */
+    int from;    /* the picture it is compared with; -1: all others */
+    shift by;
+} far_move;
+
+static const far_move none = {-1, -1, {0, 0}};
 
 int far_pictures_side(const merlin_capture *c)
 {
@@ -133,62 +143,61 @@ static void put_places(edge_level *l, const shift *place, int first, int end, in
     }
 }
 
-/* Takes the places of pictures from `first` to before `end`: from the one that is nearest to all others, or, if two are
- * too far apart, as pictures that cannot be aligned. Those that the search finds by itself are left to it. */
-static void take_places(edge_level *l, const shift *place, int first, int end)
+/* Takes the places of pictures from `first` to before `end`, around the one that is nearest to all others, unless the
+ * search finds them by itself. Tells of two that are too far apart to be aligned. */
+static far_move take_places(edge_level *l, const shift *place, int first, int end)
 {
-    int middle = first, least = INT_MAX, most = 0;
+    far_move most = none;
+    int middle = first, least = INT_MAX;
     for (int a = first; a < end; a++) {
         int sum = 0;
         for (int b = first; b < end; b++) {
             const shift by = shift_between(place[a], place[b]);
             sum += shift_reach(by);
-            if (shift_reach(by) <= most) continue;
-            most = shift_reach(by);
-            l->far_from = a, l->far = b, l->far_by = by;
+            if (shift_reach(by) > shift_reach(most.by)) most = (far_move){b, a, by};
         }
         if (sum < least) least = sum, middle = a;
     }
-    if (most > MOST_APART) return;
-    l->far = -1;
-    if (most > NEAR) put_places(l, place, first, end, middle);
+    if (shift_reach(most.by) > MOST_APART) return most;
+    if (shift_reach(most.by) > NEAR) put_places(l, place, first, end, middle);
+    return none;
 }
 
 /* Finds where the object is in the longest run of pictures that agree by threes. */
-static status find_places(edge_level *l)
+static status find_places(edge_level *l, far_move *out)
 {
     const int count = l->capture->count;
     shift *place = calloc((size_t)count, sizeof *place), next, second, both;
     if (!place) return fail(MERLIN_NO_MEMORY, "no memory for %d pictures", count);
     int first = 0, end = 0;
     bool found = find_pair(l, 0, 1, &next);
+    place[1] = next;
     for (int k = 0, start = 0; k + 2 < count; k++) {
         const bool onward = find_pair(l, k + 1, k + 2, &second);
         const bool agree = found && onward && find_pair(l, k, k + 2, &both) &&
                            shift_reach(shift_between(shift_sum(next, second), both)) <= AGREED;
-        place[k + 1] = shift_sum(place[k], next);
         place[k + 2] = shift_sum(place[k + 1], second);
         if (!agree) start = k + 1;
         if (agree && k + 3 - start > end - first) first = start, end = k + 3;
         next = second, found = onward;
     }
-    take_places(l, place, first, end);
+    *out = take_places(l, place, first, end);
     free(place);
     return OK;
 }
 
-static status find_far(edge_level *l)
+/* Finds a picture that moved too far from where all others are. */
+static far_move find_far(edge_level *l)
 {
     const int count = l->capture->count;
-    l->far = l->far_from = -1;
-    for (int k = 0; k < count; k++)
-        edge_level_add(l, k, 1);
-    for (int k = 0; k < count && l->far < 0; k++) {
+    far_move far = none;
+    sum_edges(l, 0, count);
+    for (int k = 0; k < count && far.picture < 0; k++) {
         edge_level_add(l, k, -1);
-        if (look_far(l, k, &l->far_by)) l->far = k;
+        if (look_far(l, k, &far.by)) far.picture = k;
         edge_level_add(l, k, 1);
     }
-    return l->far < 0 && count > 2 ? find_places(l) : OK;
+    return far;
 }
 
 static const char *name_of(const merlin_capture *c, int k)
@@ -199,18 +208,22 @@ static const char *name_of(const merlin_capture *c, int k)
 status far_pictures_refuse(const merlin_capture *c, shift *by)
 {
     const int longest = far_pictures_side(c);
-    edge_level l = {.capture = c, .by = by};
-    status s = edge_level_run(&l, longest, find_far);
-    if (s != OK || l.far < 0) return s;
-    const double pixels = hypot(l.far_by.x, l.far_by.y) * edge_longer_side(c) / longest;
-    if (l.far_from >= 0)
+    far_move far = none;
+    edge_level l;
+    status s = edge_level_new(c, by, longest, &l);
+    if (s == OK) far = find_far(&l);
+    if (s == OK && far.picture < 0 && c->count > 2) s = find_places(&l, &far);
+    edge_level_free(&l);
+    if (s != OK || far.picture < 0) return s;
+    const double pixels = hypot(far.by.x, far.by.y) * edge_longer_side(c) / longest;
+    if (far.from >= 0)
         return fail(MERLIN_BAD_INPUT,
                     "the pictures are not from one place: from %s to %s the object moved by about %.0f pixels; take "
                     "all with a camera that stands still",
-                    name_of(c, l.far_from), name_of(c, l.far), pixels);
+                    name_of(c, far.from), name_of(c, far.picture), pixels);
     return fail(
         MERLIN_BAD_INPUT,
         "the pictures are not from one place: in %s the object is about %.0f pixels aside from where the others "
         "have it; leave it out, or take all with a camera that stands still",
-        name_of(c, l.far), pixels);
+        name_of(c, far.picture), pixels);
 }

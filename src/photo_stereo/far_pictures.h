@@ -6,7 +6,7 @@
 #include "photo_stereo/picture_edges.h"
 
 /* MERLIN_BAD_INPUT if a picture plainly moved further than a twentieth of the longer side, up to a quarter, from where
- * the others have the object, or, if all moved, two of them from each other by more than a tenth. *by: one for each
+ * the others have the object, or, if all moved, two of them from each other by more than an eighth. *by: one for each
  * picture, zeros; then the shifts that a search from zero would not find, in pixels of far_pictures_side. */
 status far_pictures_refuse(const merlin_capture *c, shift *by);
 

@@ -2,6 +2,7 @@
 #include "photo_stereo/picture_edges.h"
 
 #include <math.h>
+#include <stdbool.h>
 
 #include "base/parallel.h"
 #include "image/resize.h"
@@ -140,27 +141,25 @@ size_t edge_trials_run(edge_trials *t)
     return count;
 }
 
-static void level_free(edge_level *l)
+status edge_level_new(const merlin_capture *capture, shift *by, int longest, edge_level *out)
+{
+    const float scale = (float)longest / (float)edge_longer_side(capture);
+    *out = (edge_level){.capture = capture, .by = by};
+    out->width = (int)fmaxf(1, roundf(scale * (float)capture->width));
+    out->height = (int)fmaxf(1, roundf(scale * (float)capture->height));
+    out->edges = calloc((size_t)capture->count, sizeof *out->edges);
+    status s = out->edges ? OK : fail(MERLIN_NO_MEMORY, "no memory for %d pictures", capture->count);
+    if (s == OK) s = parallel_try((size_t)capture->count, find_edges, out);
+    if (s == OK) s = find_mask(out);
+    if (s == OK) s = img_new(&out->sum, out->width, out->height, 1);
+    return s;
+}
+
+void edge_level_free(edge_level *l)
 {
     for (int k = 0; k < l->capture->count && l->edges; k++)
         img_free(&l->edges[k]);
     free(l->edges);
     img_free(&l->mask);
     img_free(&l->sum);
-}
-
-status edge_level_run(edge_level *l, int longest, status (*search)(edge_level *l))
-{
-    const merlin_capture *c = l->capture;
-    const float scale = (float)longest / (float)edge_longer_side(c);
-    l->width = (int)fmaxf(1, roundf(scale * (float)c->width));
-    l->height = (int)fmaxf(1, roundf(scale * (float)c->height));
-    l->edges = calloc((size_t)c->count, sizeof *l->edges);
-    status s = l->edges ? OK : fail(MERLIN_NO_MEMORY, "no memory for %d pictures", c->count);
-    if (s == OK) s = parallel_try((size_t)c->count, find_edges, l);
-    if (s == OK) s = find_mask(l);
-    if (s == OK) s = img_new(&l->sum, l->width, l->height, 1);
-    if (s == OK) s = search(l);
-    level_free(l);
-    return s;
 }

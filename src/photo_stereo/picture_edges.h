@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* The edges of a capture's pictures at some size, by which they are aligned, as light changes all else.
  *
- *     edge_level l = {.capture = capture, .by = shifts};
- *     status s = edge_level_run(&l, 128, search);
- *
- * where `search` adds the edges of pictures up and compares those of others with the sum. */
+ *     edge_level l;
+ *     status s = edge_level_new(capture, shifts, 128, &l);
+ *     ... edges of some pictures are added up, and those of others compared with the sum ...
+ *     edge_level_free(&l); */
 #ifndef MERLIN_PHOTO_STEREO_PICTURE_EDGES_H
 #define MERLIN_PHOTO_STEREO_PICTURE_EDGES_H
 
-#include <stdbool.h>
 #include <stdlib.h>
 
 #include "stereo/capture/capture.h"
@@ -52,10 +51,6 @@ typedef struct edge_level {
     img *edges;    /* of each picture, 1 channel */
     img mask, sum; /* where edges are compared; the sum of those of the pictures that are compared with, as shifted */
     shift *by;     /* of each picture */
-    bool coarsest, finest;
-    int far;      /* a picture that moved too far; -1: none */
-    int far_from; /* the picture it is compared with; -1: all others */
-    shift far_by;
 } edge_level;
 
 /* Two pictures' edges are alike if their correlation is at least this. A shadow's edge lies elsewhere in each picture:
@@ -73,9 +68,10 @@ typedef struct edge_trials {
     double likeness[(2 * EDGE_MOST_REACH + 1) * (2 * EDGE_MOST_REACH + 1)];
 } edge_trials;
 
-/* Makes the edges of this longer side and calls `search` with them; *l: its capture, shifts and place among the
- * levels. Frees them again. */
-status edge_level_run(edge_level *l, int longest, status (*search)(edge_level *l));
+/* Makes the edges of this longer side; the sum is zero. by: the shifts, one for each picture, which the caller keeps.
+ * Call edge_level_free after a failure, too. */
+status edge_level_new(const merlin_capture *capture, shift *by, int longest, edge_level *out);
+void edge_level_free(edge_level *l);
 
 /* Adds a picture's edges, shifted back, to the sum of all that are compared with. */
 void edge_level_add(edge_level *l, int k, float weight);

@@ -29,6 +29,8 @@ status img_animation_add(img_animation *a, const img *frame)
     if (!frame->data || frame->channels != 3 || frame->width != a->width || frame->height != a->height)
         return fail(MERLIN_WRONG_USE, "frame %d of an animation is not a colour image of %d x %d", a->count, a->width,
                     a->height);
+    status s = img_check_numbers(frame);
+    if (s != OK) return s;
     size_t each = frame_bytes(a);
     srgb_codes8(frame->data, each, a->codes + each * (size_t)a->count++);
     return OK;

@@ -17,8 +17,14 @@ static status check_image(const merlin_image *image)
 {
     const bool sound =
         image->data && image->width > 0 && image->height > 0 && (image->channels == 1 || image->channels == 3);
-    return sound ? img_check_numbers(image)
-                 : fail(MERLIN_WRONG_USE, "the image is empty, or has neither 1 nor 3 channels");
+    return sound ? OK : fail(MERLIN_WRONG_USE, "the image is empty, or has neither 1 nor 3 channels");
+}
+
+/* Checks that an image can be written. */
+static status check_shown(const merlin_image *image)
+{
+    status s = check_image(image);
+    return s == OK ? img_check_numbers(image) : s;
 }
 
 merlin_status merlin_image_resize(const merlin_image *image, int width, int height, merlin_image *out)
@@ -46,7 +52,7 @@ merlin_status merlin_image_encode(const merlin_image *image, merlin_image_format
     if (bytes) *bytes = NULL;
     if (size) *size = 0;
     status s = api_needs(__func__, image && bytes && size);
-    if (s == OK) s = check_image(image);
+    if (s == OK) s = check_shown(image);
     if (s == OK) s = check_format(format);
     const img_file_kind kind = format == MERLIN_JPEG ? IMG_JPEG : IMG_PNG;
     return s == OK ? img_encode_picture("the picture", image, kind, bytes, size) : s;
@@ -55,7 +61,7 @@ merlin_status merlin_image_encode(const merlin_image *image, merlin_image_format
 merlin_status merlin_mask_write(const merlin_image *mask, const char *path)
 {
     status s = api_needs(__func__, mask && path);
-    if (s == OK) s = check_image(mask);
+    if (s == OK) s = check_shown(mask);
     if (s != OK) return s;
     if (file_ends_in(path, ".webp")) return img_write_webp(path, mask);
     if (file_ends_in(path, ".png")) return img_write_png(path, mask, IMG_LINEAR8);
@@ -72,7 +78,7 @@ merlin_status merlin_sheet_write(const merlin_tile *tiles, int count, int column
         s = fail(MERLIN_WRONG_USE, "cannot write %s: a sheet has 1 to %d tiles of 1 to 2048 pixels", path, MOST_TILES);
     for (int i = 0; i < count && s == OK; i++) {
         s = api_needs(__func__, tiles[i].label && tiles[i].picture);
-        if (s == OK) s = check_image(tiles[i].picture);
+        if (s == OK) s = check_shown(tiles[i].picture);
         drawn[i] = (figure_tile){tiles[i].label, tiles[i].picture};
     }
     return s == OK ? figure_sheet(path, drawn, count, columns, side) : s;
@@ -102,7 +108,6 @@ merlin_status merlin_animation_new(int width, int height, int most, merlin_anima
 merlin_status merlin_animation_add(merlin_animation *animation, const merlin_image *frame)
 {
     status s = api_needs(__func__, animation && frame);
-    if (s == OK) s = check_image(frame);
     return s == OK ? img_animation_add(&animation->frames, frame) : s;
 }
 

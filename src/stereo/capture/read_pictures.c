@@ -39,10 +39,10 @@ typedef struct reading {
     int bits;             /* its bits */
     picture_tone *tone;   /* of every picture */
     float *brightest;     /* brightest float of every picture */
-    float *exposure;      /* of every picture (exif.h); NULL unless all are known */
+    float *exposure;      /* of every picture (exif.h); 0: not known */
+    bool exposures_known; /* all are, and none is absurd */
     float ambient_exposure;
-    float exposure_ratio;           /* of the largest known exposure to the least; 1 if that is absurd */
-    int unexposed, unexposed_first; /* number of pictures whose exposure is not known, and the first of them */
+    float exposure_ratio; /* of the largest known exposure to the least; 1 if that is absurd */
     merlin_capture *into;
 } reading;
 
@@ -144,7 +144,7 @@ static void note_grey(const reading *r, merlin_capture *c)
 /* Returns the factor of the ambient picture in picture i, which may have been exposed otherwise. */
 static float ambient_share(const reading *r, int i)
 {
-    return r->exposure && r->ambient_exposure > 0 ? r->exposure[i] / r->ambient_exposure : 1;
+    return r->exposures_known && r->ambient_exposure > 0 ? r->exposure[i] / r->ambient_exposure : 1;
 }
 
 /* Counts values below the ambient picture's: as light only adds, clearly lower values show that it is not ambient
@@ -345,6 +345,7 @@ static status read_exposures(reading *r, const merlin_capture *c)
 {
     static const float absurd = 1000;
     float least = HUGE_VALF, most = 0;
+    bool all = true;
     status s = r->ambient_path ? read_exposure(r->ambient_path, &r->ambient_exposure) : OK;
     r->exposure = calloc((size_t)c->count, sizeof *r->exposure);
     if (!r->exposure) return fail(MERLIN_NO_MEMORY, "no memory for %d exposures", c->count);
@@ -352,31 +353,29 @@ static status read_exposures(reading *r, const merlin_capture *c)
         char *path = path_of(r, c->name[i]);
         s = read_exposure(path, &r->exposure[i]);
         free(path);
-        if (r->exposure[i] > 0) {
-            least = fminf(least, r->exposure[i]);
-            most = fmaxf(most, r->exposure[i]);
-        } else if (r->unexposed++ == 0) {
-            r->unexposed_first = i;
-        }
+        all &= r->exposure[i] > 0;
+        if (r->exposure[i] > 0) least = fminf(least, r->exposure[i]);
+        most = fmaxf(most, r->exposure[i]);
     }
     const bool sound = most > 0 && most <= absurd * least;
     r->exposure_ratio = sound ? most / least : 1;
-    if (sound && r->unexposed == 0) return s;
-    free(r->exposure);
-    r->exposure = NULL;
+    r->exposures_known = sound && all;
     return s;
 }
 
 static void note_unexposed(const reading *r, merlin_capture *c)
 {
     char others[48] = "";
-    if (r->unexposed > 1) snprintf(others, sizeof others, " and %d more", r->unexposed - 1);
+    int count = 0, first = 0;
+    for (int i = c->count - 1; i >= 0; i--)
+        if (!(r->exposure[i] > 0)) count++, first = i;
+    if (count > 1) snprintf(others, sizeof others, " and %d more", count - 1);
     warnings_add(
         &c->noticed, "exposures_unknown",
         "by their EXIF some pictures were exposed up to %.3g times as much as others, but %s%s %s no exposure, "
         "so that nothing is evened out, and normals may be many degrees off: keep the EXIF of all, or list the "
         "strengths in light_intensities.txt",
-        (double)r->exposure_ratio, c->name[r->unexposed_first], others, r->unexposed > 1 ? "have" : "has");
+        (double)r->exposure_ratio, c->name[first], others, count > 1 ? "have" : "has");
 }
 
 /* Takes exposures that differ for strengths of the lights: values are divided by either. */
@@ -385,7 +384,7 @@ static void even_out(const reading *r, merlin_capture *c)
     static const float differ = 1.02f;
     double sum = 0;
     if (c->intensities_listed || !(r->exposure_ratio > differ)) return;
-    if (!r->exposure) {
+    if (!r->exposures_known) {
         note_unexposed(r, c);
         return;
     }
