@@ -53,10 +53,10 @@ typedef struct merlin_capture_files {
     int lights_optional; /* 1: a folder without a list of lights is read, too: its lights are unknown */
     int frames;          /* largest number of frames that are taken from a video, at most 64; 0: 16 */
     int linear;          /* 1: 8-bit pictures are linear, not sRGB, whatever their profiles state */
-    float field_of_view; /* horizontal, degrees; 0: for near or unknown lights that of the first picture's EXIF, else
-                          * unknown */
+    float field_of_view; /* horizontal, degrees; 0: for near lights, and in merlin_maps_from_capture, that of the first
+                          * picture's EXIF, else unknown */
     float distance;    /* of the object from the camera, in the unit of the lights' positions; 0: unknown. Only for near
-                        * lights or a known field of view */
+                        * lights or a given field of view */
     int (*stop)(void); /* called between pictures; a nonzero result ends the work with MERLIN_STOPPED; may be NULL */
     merlin_progress progress; /* called for the pictures that are read, with "reading"; may be NULL */
     void *progress_context;

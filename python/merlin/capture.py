@@ -92,8 +92,8 @@ class Capture:
         lights: lights.txt or an .lp file; None: the folder's. mask, ambient: pictures; None: the folder's, if any.
         near: the list holds positions. unknown: wherever lights are said to be, they are not known. linear: 8-bit
         pictures are linear. frames: of a video so many are taken at most, those whose light differs most; 0: 16.
-        field_of_view: horizontal, degrees; 0: by EXIF where lights are near or not known (60 if it says nothing and they
-        are near), else far away. Progress and stop: as of Model.estimate."""
+        field_of_view: horizontal, degrees; 0: by EXIF where lights are near (60 if it says nothing), and for maps, else
+        far away. Progress and stop: as of Model.estimate."""
         files = h.CaptureFiles(optional_path(lights), optional_path(mask), optional_path(ambient), int(near),
                                int(unknown), 0, whole(frames, "frames"), int(linear),
                                real(field_of_view, "field_of_view"), real(distance, "distance"))

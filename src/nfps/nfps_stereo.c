@@ -32,14 +32,6 @@ typedef struct scale {
     float *images, *point, *view;
 } scale;
 
-static float lights_reach(const merlin_capture *c)
-{
-    double sum = 0;
-    for (int k = 0; k < c->count; k++)
-        sum += (double)vec3_length(vec3_of(c->light[k].position));
-    return fmaxf((float)(sum / c->count), 1e-6f);
-}
-
 static nfps_light light_of(const merlin_light *from)
 {
     return (nfps_light){vec3_of(from->position), false, vec3_normalize(vec3_of(from->direction)), from->lobe};
@@ -61,7 +53,7 @@ static status frame_of(const merlin_capture *c, frame *f)
         f->picture[k] = (int)((size_t)k * (size_t)c->count / (size_t)f->count);
         f->light[k] = light_of(&c->light[f->picture[k]]);
     }
-    f->distance = c->camera.distance > 0 ? c->camera.distance : lights_reach(c);
+    f->distance = c->camera.distance > 0 ? c->camera.distance : pst_lights_reach(c);
     return OK;
 }
 
@@ -139,6 +131,17 @@ static status scale_pictures(const frame *f, scale *scales, int count)
     return s;
 }
 
+/* Makes ones of the pixels that are covered by half and more, or by half of what any is: nothing else would be left of
+ * a ring or a chain in few pixels. */
+static void settle_mask(img *mask)
+{
+    float most = 0;
+    for (size_t i = 0; i < img_value_count(mask); i++)
+        most = fmaxf(most, mask->data[i]);
+    for (size_t i = 0; i < img_value_count(mask); i++)
+        mask->data[i] = mask->data[i] > 0.5f * fminf(most, 1) ? 1 : 0;
+}
+
 static status scale_new(const frame *f, int size, scale *l)
 {
     const size_t pixels = (size_t)size * (size_t)size;
@@ -153,8 +156,7 @@ static status scale_new(const frame *f, int size, scale *l)
     status s = img_new(&l->normal, size, size, 3);
     if (s == OK) s = img_new(&l->depth, size, size, 1);
     if (s == OK) s = cut(f, &c->mask, size, &l->mask);
-    for (size_t i = 0; s == OK && i < pixels; i++)
-        l->mask.data[i] = l->mask.data[i] > 0.5f ? 1 : 0;
+    if (s == OK) settle_mask(&l->mask);
     l->images = calloc((size_t)f->count * 3 * pixels, sizeof *l->images);
     return s == OK && !l->images ? fail(MERLIN_NO_MEMORY, "no memory for %d pictures", f->count) : s;
 }

@@ -26,6 +26,13 @@ static inline pinhole pinhole_of(int width, int height, float field_of_view)
                      .y = 0.5f * (float)height};
 }
 
+/* Returns how many degrees wide a picture of so many pixels is. The camera must be near. */
+static inline float pinhole_field_of_view(const pinhole *c, int width)
+{
+    static const float DEGREES = 57.2957795f;
+    return 2 * DEGREES * atanf(0.5f * (float)width / c->focal);
+}
+
 /* Returns the focal length in pixels of a picture by the one in mm that gives the same diagonal angle of view on
  * 36 × 24 mm, as EXIF states it; of 0 it is 0. */
 static inline float pinhole_focal_of_35mm(int width, int height, float focal_35mm)

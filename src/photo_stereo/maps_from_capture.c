@@ -137,13 +137,6 @@ static void find_lens(const merlin_params *params, merlin_capture *c)
     c->camera.distance = distance;
 }
 
-/* Returns the horizontal field of view, degrees; 0: unknown. */
-static float field_of_view(const merlin_capture *c)
-{
-    if (!pinhole_is_near(&c->camera)) return 0;
-    return 2 * atanf(0.5f * (float)c->width / c->camera.focal) / (float)DEGREE;
-}
-
 static status estimate(merlin_model *model, seen *s, const merlin_params *params, merlin_maps *maps)
 {
     merlin_params p = *params;
@@ -156,7 +149,8 @@ static status estimate(merlin_model *model, seen *s, const merlin_params *params
     merlin_object object = {0};
     while (p.views > 1 && p.views * s->count > RUNS)
         p.views--;
-    if (!(p.fov > 0)) p.fov = field_of_view(s->capture);
+    const pinhole *lens = &s->capture->camera;
+    if (!(p.fov > 0) && pinhole_is_near(lens)) p.fov = pinhole_field_of_view(lens, s->capture->width);
     p.hint.reduced = s->capture->reduced;
     status st = photograph(s, 0, &first);
     if (st == OK) st = find_object(s, &first, &p.hint, &object);

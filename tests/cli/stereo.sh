@@ -104,7 +104,7 @@ present "${files[@]/#/estimated/stereo/}" estimated/stereo/mesh.glb
 # what estimate wrote is in half floats: three digits
 awk "BEGIN { exit !(($(spread) - $estimated) ^ 2 < (0.005 * $estimated) ^ 2) }" || complain "$(spread) is not $estimated"
 echo "places about the object are near lights, by the lens that is given, too"
-"$MERLIN" estimate "$MERLIN_SOURCE_DIR/examples/demo.png" --size 64 --views 1 -o cup --quiet || complain "no maps"
+"$MERLIN" estimate "$MERLIN_SOURCE_DIR/examples/demo.png" --size 96 -o cup --quiet || complain "no maps"
 "$MERLIN" relight cup --dome 12 --near -o lamps --quiet || complain "no pictures under near lamps"
 {
     echo 12
@@ -112,7 +112,7 @@ echo "places about the object are near lights, by the lens that is given, too"
 } >places.lp
 succeeds '"method":"near"' stereo lamps --lights places.lp --fov 60 --json -o placed
 differ=$("$NORMALS_DIFFER" placed cup)
-awk "BEGIN { exit !($differ < 1.6) }" || complain "its normals are $differ degrees off" # 1.3; by their residuals 2.0
+awk "BEGIN { exit !($differ < 1.6) }" || complain "its normals are $differ degrees off" # 1.1; by their residuals 2.3
 export MERLIN_MODEL=$scratch/weights.safetensors
 cp dome/dome_* dome/dome.lp estimated
 succeeds '"pictures": *6' stereo estimated --method ls --json -o out

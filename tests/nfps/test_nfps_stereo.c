@@ -100,6 +100,27 @@ static void maps_are_whole_and_in_their_units(void **state)
     nfps_network_close(n);
 }
 
+/* Half of no pixel of the coarsest scale is covered by a thin ring. */
+static void thin_objects_are_found(void **state)
+{
+    (void)state;
+    merlin_capture c;
+    img normal = {0}, depth = {0};
+    nfps_network *n = network_new();
+    capture_of(&c);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        const float x = (float)(i % WIDTH) - 85, y = (float)(i / WIDTH) - 50;
+        c.mask.data[i] = fabsf(sqrtf(x * x + y * y) - 48) < 0.6f;
+    }
+    assert_int_equal(nfps_stereo(n, &c, &(nfps_options){0}, &normal, &depth), OK);
+    for (int i = 0; i < WIDTH * HEIGHT; i++)
+        assert_true((depth.data[i] > 0) == (c.mask.data[i] > 0.5f));
+    img_free(&normal);
+    img_free(&depth);
+    pst_capture_free(&c);
+    nfps_network_close(n);
+}
+
 /* The library's functions: the surface has the network's normals, and near begins with them if it is told to. */
 static void surfaces_come_by_the_network(void **state)
 {
@@ -167,6 +188,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(maps_are_whole_and_in_their_units),
+        cmocka_unit_test(thin_objects_are_found),
         cmocka_unit_test(surfaces_come_by_the_network),
         cmocka_unit_test(what_it_cannot_do_is_said),
     };

@@ -375,7 +375,7 @@ static void a_distance_is_of_a_camera_that_is_known(void **state)
     merlin_capture c;
     merlin_capture_files options = {.distance = 450};
     assert_int_equal(pst_capture_read(scratch, &options, &c), MERLIN_WRONG_USE);
-    assert_non_null(strstr(status_message(), "field of view is known"));
+    assert_non_null(strstr(status_message(), "field of view is given"));
     options.field_of_view = 90;
     assert_int_equal(pst_capture_read(scratch, &options, &c), OK);
     assert_float_equal(c.camera.distance, 450, 0);
@@ -430,6 +430,8 @@ static void given_intensities_are_kept(void **state)
     assert_refused(&PLAIN, "light_intensities.txt:2");
     write_text("light_intensities.txt", "1\n0\n1\n");
     assert_refused(&PLAIN, "light_intensities.txt:2");
+    write_text("light_intensities.txt", "a.png 9\nb.png 9\nb.png 9\n");
+    assert_refused(&PLAIN, "light_intensities.txt:3: the intensity of this light is in a line before");
     write_text("light_intensities.txt", "1\n1\n");
     assert_refused(&PLAIN, "2 intensities for 3 lights");
 }

@@ -18,6 +18,28 @@ static void a_mask_is_read_and_must_fit(void **state)
     assert_refused(&(merlin_capture_files){.mask = "/nowhere/mask.png"}, "/nowhere/mask.png");
 }
 
+/* Whatever their names are, as those of uploaded files are the sender's. */
+static void a_named_mask_or_ambient_picture_is_no_photograph(void **state)
+{
+    (void)state;
+    three_pictures(IMG_LINEAR16);
+    write_flat("outline.png", 6, 4, 1, 1, IMG_LINEAR8);
+    write_flat("room.png", 6, 4, 3, 0.1f, IMG_LINEAR16);
+    char *outline = strdup(scratch_path("outline.png")), *room = strdup(scratch_path("room.png"));
+    merlin_capture_files files = {.mask = outline, .ambient = room};
+    for (files.unknown_lights = 0; files.unknown_lights < 2; files.unknown_lights++) {
+        merlin_capture c;
+        assert_int_equal(pst_capture_read(scratch, &files, &c), OK);
+        assert_int_equal(c.count, 3);
+        assert_string_equal(c.name[2], "c.png");
+        assert_int_equal(c.skipped.count, 0);
+        pst_capture_free(&c);
+    }
+    assert_refused(&PLAIN, "5 pictures, but");
+    free(outline);
+    free(room);
+}
+
 /* As stereo -o does that names the captures' folder. */
 static void results_beside_the_pictures_are_none(void **state)
 {
@@ -262,6 +284,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         in_scratch(a_mask_is_read_and_must_fit),
+        in_scratch(a_named_mask_or_ambient_picture_is_no_photograph),
         in_scratch(results_beside_the_pictures_are_none),
         in_scratch(rarer_kinds_are_taken_where_they_are_alone),
         in_scratch(pictures_are_black_far_from_a_given_mask),

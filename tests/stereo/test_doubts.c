@@ -438,6 +438,20 @@ static void an_inverted_mask_is_told(void **state)
     capture_drop(&c);
 }
 
+/* As 8-bit numbers are that a program saved with 16 bits. */
+static void dark_pictures_are_solved_unchecked(void **state)
+{
+    (void)state;
+    merlin_capture c;
+    take(BALL, 0, &c);
+    for (int k = 0; k < LIGHTS; k++)
+        for (int i = 0; i < SIZE * SIZE; i++)
+            c.picture[k].wide[i] /= 400;
+    warnings doubts = doubts_of(&c);
+    assert_null(warnings_find(&doubts, "lights_do_not_fit"));
+    capture_drop(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -457,6 +471,7 @@ int main(void)
         cmocka_unit_test(few_pictures_check_nothing_and_it_is_told),
         cmocka_unit_test(gloss_is_not_taken_for_strengths),
         cmocka_unit_test(an_inverted_mask_is_told),
+        cmocka_unit_test(dark_pictures_are_solved_unchecked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

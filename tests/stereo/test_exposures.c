@@ -57,6 +57,13 @@ static void equal_or_unknown_exposures_change_nothing(void **state)
     assert_non_null(unknown);
     assert_non_null(strstr(unknown->message, "up to 3 times as much as others, but b.png has no exposure"));
     pst_capture_free(&c);
+    three_exposed(1, 2, 3);
+    write_flat("ambient.png", 6, 4, 3, 0.1f, IMG_LINEAR16);
+    assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);
+    unknown = warnings_find(&c.noticed, "exposures_unknown");
+    assert_non_null(unknown);
+    assert_non_null(strstr(unknown->message, "ambient.png has no exposure"));
+    pst_capture_free(&c);
     three_exposed(1, 2, 20000); /* no camera's */
     write_exposed("ambient.png", 0.1f, 1);
     assert_int_equal(pst_capture_read(scratch, &PLAIN, &c), OK);

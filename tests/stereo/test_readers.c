@@ -285,7 +285,7 @@ static void write_luces_normals(float turned)
 
 static void make_luces(int width)
 {
-    write_text("led_params.txt", "header\n2 2 3 900 1.5 1 150\n1 2 3 0 0 1 1 1\n4 5 6 0 0 1 1 1\n");
+    write_text("led_params.txt", "header\n2 2 3 900 1.5 1 150\n1 2 3 0 0 1 1 1\n# between\n4 5 6 0 0 1 1 1\n# end\n");
     write_flat("01.png", width, 2, 3, 0.5f, IMG_LINEAR16);
     write_flat("02.png", width, 2, 3, 0.25f, IMG_LINEAR16);
     write_flat("mask.png", 3, 2, 1, 1, IMG_LINEAR8);

@@ -74,6 +74,9 @@ static status take_row(const char *path, const text_row *r, size_t next, const l
         return fail(MERLIN_BAD_INPUT, "%s:%d: expected one or three intensities, found %zu", path, r->line, count);
     status s = words ? find_light(path, r, words, of, &next) : OK;
     if (s != OK || next >= of->count) return s;
+    if (of->value[next][0] > 0)
+        return fail(MERLIN_BAD_INPUT, "%s:%d: the intensity of this light is in a line before it already", path,
+                    r->line);
     for (size_t k = 0; k < 3 && s == OK; k++)
         s = take_value(path, r->line, &value[count == 3 ? k : 0], &of->value[next][k]);
     return s;

@@ -28,8 +28,8 @@ typedef struct light_strengths {
  * MERLIN_BAD_INPUT if two do. */
 status light_strengths_find(const char *folder, const char *lights, bool listed, char **path);
 
-/* Reads them. MERLIN_BAD_INPUT for what are no numbers above 0, names that `find` does not know, and another number
- * than of lights. */
+/* Reads them. MERLIN_BAD_INPUT for what are no numbers above 0, names that `find` does not know, a light twice, and
+ * another number than of lights. */
 status light_strengths_read(const char *path, const light_strengths *of);
 
 #endif

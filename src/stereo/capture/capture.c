@@ -93,6 +93,14 @@ void pst_capture_forget_lights(merlin_capture *c)
     c->lighting = MERLIN_UNKNOWN_LIGHTS;
 }
 
+float pst_lights_reach(const merlin_capture *c)
+{
+    double sum = 0;
+    for (int k = 0; k < c->count; k++)
+        sum += (double)vec3_length(vec3_of(c->light[k].position));
+    return fmaxf((float)(sum / c->count), 1e-6f);
+}
+
 void pst_capture_see(merlin_capture *c, float field_of_view, float distance)
 {
     const bool wanted = c->lighting == MERLIN_NEAR_LIGHTS && !pinhole_is_near(&c->camera);

@@ -81,6 +81,8 @@ void pst_capture_free(merlin_capture *c);
  * leaves the present value; with near lights a camera without a field of view gets the one of the first picture's EXIF,
  * else the default of 60 degrees. */
 void pst_capture_see(merlin_capture *c, float field_of_view, float distance);
+/* Returns the mean distance of near lights from the camera. */
+float pst_lights_reach(const merlin_capture *c);
 /* Makes the lights unknown, except for their intensities, which are measured separately. */
 void pst_capture_forget_lights(merlin_capture *c);
 

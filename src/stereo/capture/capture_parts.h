@@ -8,12 +8,13 @@
 #include "stereo/capture/capture.h"
 
 /* Fails for a folder without pictures, and names the subfolder that has some. */
-status pst_check_pictures(const char *folder);
+status pst_check_pictures(const char *folder, const merlin_capture_files *options);
 
-/* Allocates the pictures of a folder, with their names sorted: without masks, ambient picture, ground truth and
- * merlin's own output. numbered: only names that are a number. Fails unless there are as many as the file `lights`
- * (which may be NULL) lists. */
-status pst_take_pictures(const char *folder, bool numbered, const char *lights, size_t wanted, merlin_capture *c);
+/* Allocates the pictures of a folder, with their names sorted: without masks, ambient picture, ground truth, merlin's
+ * own output, and what the options name as mask or ambient picture. numbered: only names that are a number. Fails
+ * unless there are as many as the file `lights` (which may be NULL) lists. */
+status pst_take_pictures(const char *folder, bool numbered, const merlin_capture_files *options, const char *lights,
+                         size_t wanted, merlin_capture *c);
 
 /* Finds the folder's ambient.png, .tif and so on, preferably with the extension of this picture; *path is NULL if there
  * is none. Free it. */
@@ -36,9 +37,9 @@ status pst_read_light_list(const char *folder, const char *lights, const merlin_
 status pst_read_video(const char *path, const merlin_capture_files *options, merlin_capture *c);
 
 status pst_read_plain(const char *folder, const merlin_capture_files *options, merlin_capture *c);
-status pst_read_luces(const char *folder, merlin_capture *c);
+status pst_read_luces(const char *folder, const merlin_capture_files *options, merlin_capture *c);
 status pst_read_luces_truth(const char *folder, merlin_capture *c);
-status pst_read_diligent(const char *folder, merlin_capture *c);
+status pst_read_diligent(const char *folder, const merlin_capture_files *options, merlin_capture *c);
 status pst_read_diligent_truth(const char *folder, merlin_capture *c);
 
 /* Reads the pictures named in c->name, in this folder or, if that is NULL, anywhere, and subtracts the ambient one. If

@@ -110,12 +110,26 @@ static picture_class choose_class(const img_folder *f, bool numbered)
     return count[USUAL] ? USUAL : count[RARE] ? RARE : CLASSES;
 }
 
+static bool is_one_of(const char *path, const char *mask, const char *ambient)
+{
+    return (mask && file_is_same(path, mask)) || (ambient && file_is_same(path, ambient));
+}
+
+/* Makes masks, which are not taken, of the files that the options name. */
+static void set_aside(const merlin_capture_files *options, img_folder *f)
+{
+    for (size_t i = 0; i < f->count; i++)
+        if (is_one_of(f->at[i].path, options->mask, options->ambient)) f->at[i].is_mask = true;
+}
+
 /* Moves the pictures of one class to the front, in no order; *count: their number. */
-static status list_pictures(const char *folder, bool numbered, img_folder *f, size_t *count)
+static status list_pictures(const char *folder, bool numbered, const merlin_capture_files *options, img_folder *f,
+                            size_t *count)
 {
     *count = 0;
     status s = img_folder_read(folder, f);
     if (s != OK) return s;
+    set_aside(options, f);
     picture_class taken = choose_class(f, numbered);
     for (size_t i = 0; i < f->count; i++) {
         if (!may_be_taken(&f->at[i], numbered) || class_of(&f->at[i]) != taken) continue;
@@ -128,11 +142,11 @@ static status list_pictures(const char *folder, bool numbered, img_folder *f, si
     return s;
 }
 
-status pst_check_pictures(const char *folder)
+status pst_check_pictures(const char *folder, const merlin_capture_files *options)
 {
     img_folder f;
     size_t count;
-    status s = list_pictures(folder, false, &f, &count);
+    status s = list_pictures(folder, false, options, &f, &count);
     if (s == OK) img_folder_free(&f);
     return s;
 }
@@ -177,11 +191,12 @@ static status refuse_count(const char *folder, bool numbered, const img_folder *
                 *left ? "; " : "", left);
 }
 
-status pst_take_pictures(const char *folder, bool numbered, const char *lights, size_t wanted, merlin_capture *c)
+status pst_take_pictures(const char *folder, bool numbered, const merlin_capture_files *options, const char *lights,
+                         size_t wanted, merlin_capture *c)
 {
     img_folder f;
     size_t count;
-    status s = list_pictures(folder, numbered, &f, &count);
+    status s = list_pictures(folder, numbered, options, &f, &count);
     if (s != OK) return s;
     if (lights && count != wanted) s = refuse_count(folder, numbered, &f, count, lights, wanted);
     if (s == OK) s = pst_capture_reserve(c, count);
@@ -224,7 +239,7 @@ status pst_list_skipped(const char *folder, const char *mask, const char *ambien
     for (size_t i = 0; i < f.count && s == OK; i++) {
         const img_folder_file *file = &f.at[i];
         bool other = file->is_picture && !file->is_mask && is_beside_the_capture(file->name);
-        bool used = (mask && file_is_same(file->path, mask)) || (ambient && file_is_same(file->path, ambient));
+        const bool used = is_one_of(file->path, mask, ambient);
         if (used || other || is_picture_of(c, file->name)) continue;
         s = img_folder_skip(file, reason_of(&f, file, taken), true, &c->skipped);
     }

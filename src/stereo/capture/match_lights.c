@@ -15,16 +15,17 @@ enum { NAMED = 3, NAMES = 400 };
 /* The files of a folder, and those that are a capture's pictures, in order. */
 typedef struct listing {
     const char *folder;
+    const merlin_capture_files *options;
     char **paths;
     size_t count;
     merlin_capture pictures;
 } listing;
 
-static status list_all(const char *folder, listing *out)
+static status list_all(const char *folder, const merlin_capture_files *options, listing *out)
 {
-    *out = (listing){.folder = folder};
+    *out = (listing){.folder = folder, .options = options};
     status s = file_list(folder, NULL, &out->paths, &out->count);
-    return s == OK ? pst_take_pictures(folder, false, NULL, 0, &out->pictures) : s;
+    return s == OK ? pst_take_pictures(folder, false, options, NULL, 0, &out->pictures) : s;
 }
 
 static void free_listing(listing *in)
@@ -95,7 +96,7 @@ status pst_match_name(const char *folder, const char *name, char **found)
 {
     listing in;
     *found = NULL;
-    status s = list_all(folder, &in);
+    status s = list_all(folder, &(merlin_capture_files){0}, &in);
     const char *file = s == OK ? find_listed(&in, name) : NULL;
     if (file && !(*found = strdup(file))) s = fail(MERLIN_NO_MEMORY, "no memory for a file name");
     free_listing(&in);
@@ -234,7 +235,7 @@ static status take_numbers(const listing *in, const char *lights, const light_li
 
 static status take_in_order(const listing *in, const char *lights, const light_list *list, merlin_capture *c)
 {
-    status s = pst_take_pictures(in->folder, false, lights, list->count, c);
+    status s = pst_take_pictures(in->folder, false, in->options, lights, list->count, c);
     c->lights_in_order = true;
     return s == OK ? OK : fail_in(s, "%s names pictures of another folder", lights);
 }
@@ -258,11 +259,12 @@ static status match(const listing *in, const char *lights, const light_list *lis
     return s;
 }
 
-status pst_match_lights(const char *folder, const char *lights, const light_list *list, merlin_capture *c)
+status pst_match_lights(const char *folder, const merlin_capture_files *options, const char *lights,
+                        const light_list *list, merlin_capture *c)
 {
-    if (!list->name) return pst_take_pictures(folder, false, lights, list->count, c);
+    if (!list->name) return pst_take_pictures(folder, false, options, lights, list->count, c);
     listing in;
-    status s = list_all(folder, &in);
+    status s = list_all(folder, options, &in);
     if (s == OK) s = match(&in, lights, list, c);
     free_listing(&in);
     return s;

@@ -24,8 +24,8 @@ static status read_layout(layout kind, const char *folder, const merlin_capture_
     if (kind == LAYOUT_DILIGENT && options->near_lights && !options->unknown_lights)
         return fail(MERLIN_WRONG_USE, "the lights of %s/light_directions.txt are no positions; give a list of these",
                     folder);
-    if (kind == LAYOUT_LUCES) return pst_read_luces(folder, c);
-    if (kind == LAYOUT_DILIGENT) return pst_read_diligent(folder, c);
+    if (kind == LAYOUT_LUCES) return pst_read_luces(folder, options, c);
+    if (kind == LAYOUT_DILIGENT) return pst_read_diligent(folder, options, c);
     return pst_read_plain(folder, options, c);
 }
 
@@ -40,7 +40,7 @@ static status settle_camera(const merlin_capture_files *options, merlin_capture 
 {
     pst_capture_see(c, options->field_of_view, options->distance);
     if (!(options->distance > 0) || pinhole_is_near(&c->camera)) return OK;
-    return fail(MERLIN_WRONG_USE, "the object's distance is for near lights or a camera whose field of view is known");
+    return fail(MERLIN_WRONG_USE, "the object's distance is for near lights or a camera whose field of view is given");
 }
 
 /* Reads what is no folder. */

@@ -69,18 +69,19 @@ static status read_names(const char *path, const char *folder, merlin_capture *c
 }
 
 /* Reads the pictures named by filenames.txt, unless the list itself has names. */
-static status read_named(const char *directions, const char *names, const char *folder, merlin_capture *c)
+static status read_named(const char *directions, const char *names, const char *folder,
+                         const merlin_capture_files *options, merlin_capture *c)
 {
     light_list list;
     status s = light_list_read(directions, &list);
     if (s != OK) return s;
     if (list.name) {
-        s = pst_match_lights(folder, directions, &list, c);
+        s = pst_match_lights(folder, options, directions, &list, c);
     } else {
         s = pst_capture_reserve(c, list.count);
         if (s == OK) s = read_names(names, folder, c);
     }
-    if (s == OK) s = pst_set_lights(directions, &list, &(merlin_capture_files){0}, c);
+    if (s == OK) s = pst_set_lights(directions, &list, options, c);
     if (s == OK) s = pst_read_strengths(folder, directions, list.intensity, c);
     light_list_free(&list);
     return s;
@@ -88,14 +89,15 @@ static status read_named(const char *directions, const char *names, const char *
 
 /* Reads the layout. Without filenames.txt pictures are in the order of their names, as readers of the later data sets
  * assume. */
-status pst_read_diligent(const char *folder, merlin_capture *c)
+status pst_read_diligent(const char *folder, const merlin_capture_files *options, merlin_capture *c)
 {
+    const merlin_capture_files apart = {.mask = options->mask, .ambient = options->ambient};
     char *directions = file_join(folder, "light_directions.txt"), *names = file_join(folder, "filenames.txt");
     status s = directions && names ? OK : fail(MERLIN_NO_MEMORY, "no memory for a file name");
     if (s == OK && file_exists(names))
-        s = read_named(directions, names, folder, c);
+        s = read_named(directions, names, folder, &apart, c);
     else if (s == OK)
-        s = pst_read_light_list(folder, directions, &(merlin_capture_files){0}, c);
+        s = pst_read_light_list(folder, directions, &apart, c);
     free(names);
     free(directions);
     return s;

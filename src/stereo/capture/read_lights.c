@@ -186,7 +186,7 @@ status pst_read_light_list(const char *folder, const char *lights, const merlin_
     light_list list;
     status s = light_list_read(lights, &list);
     if (s != OK) return s;
-    s = pst_match_lights(folder, lights, &list, c);
+    s = pst_match_lights(folder, options, lights, &list, c);
     if (s == OK) s = pst_set_lights(lights, &list, options, c);
     if (s == OK) s = pst_read_strengths(folder, lights, list.intensity, c);
     light_list_free(&list);
@@ -194,23 +194,23 @@ status pst_read_light_list(const char *folder, const char *lights, const merlin_
 }
 
 /* Reads pictures of which no list of lights is used. */
-static status read_unlit(const char *folder, merlin_capture *c)
+static status read_unlit(const char *folder, const merlin_capture_files *options, merlin_capture *c)
 {
-    status s = pst_take_pictures(folder, false, NULL, 0, c);
+    status s = pst_take_pictures(folder, false, options, NULL, 0, c);
     return s == OK ? pst_read_strengths(folder, NULL, false, c) : s;
 }
 
 status pst_read_plain(const char *folder, const merlin_capture_files *options, merlin_capture *c)
 {
     char *lights = NULL;
-    if (options->unknown_lights) return read_unlit(folder, c);
+    if (options->unknown_lights) return read_unlit(folder, options, c);
     status s = find_lights(folder, options->lights, &lights);
     if (s == OK && !lights && options->lights_optional && !options->near_lights) {
-        s = read_unlit(folder, c);
+        s = read_unlit(folder, options, c);
         c->lighting = MERLIN_UNKNOWN_LIGHTS;
         return s;
     }
-    if (s == OK && !lights) s = pst_check_pictures(folder);
+    if (s == OK && !lights) s = pst_check_pictures(folder, options);
     if (s == OK && !lights)
         return fail(MERLIN_BAD_INPUT,
                     "%s says nothing of its lights (no lights.txt, .lp, LUCES or DiLiGenT files); name the file that "

@@ -34,7 +34,7 @@ typedef struct numbers {
 static status numbers_of(const text_row *r, const char *where, numbers *out)
 {
     *out = (numbers){.where = where, .line = r->line};
-    if (r->comment || r->word[0].kind == TEXT_WORD) return OK;
+    if (r->word[0].kind == TEXT_WORD) return OK;
     for (size_t i = 0; i < r->count; i++) {
         const text_word *w = &r->word[i];
         if (w->kind != TEXT_NUMBER)
@@ -118,6 +118,7 @@ static status take_rows(const text_rows *rows, const char *where, luces_params *
     int lights = 0;
     for (size_t i = 0; i < rows->count; i++) {
         numbers t;
+        if (rows->row[i].comment) continue;
         status s = numbers_of(&rows->row[i], where, &t);
         if (s == OK && t.count == 0 && lights == 0) continue;
         if (s == OK) s = check_range(&t);
@@ -174,13 +175,13 @@ static status refuse_mosaics(const char *folder)
                 folder);
 }
 
-status pst_read_luces(const char *folder, merlin_capture *c)
+status pst_read_luces(const char *folder, const merlin_capture_files *options, merlin_capture *c)
 {
     luces_params p;
     status s = refuse_mosaics(folder);
     if (s == OK) s = read_params(folder, &p);
     if (s != OK) return s;
-    s = pst_take_pictures(folder, true, "led_params.txt", (size_t)p.count, c);
+    s = pst_take_pictures(folder, true, options, "led_params.txt", (size_t)p.count, c);
     if (s == OK) {
         memcpy(c->light, p.light, (size_t)p.count * sizeof *p.light);
         c->lighting = MERLIN_NEAR_LIGHTS;

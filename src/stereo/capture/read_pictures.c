@@ -378,12 +378,23 @@ static void note_unexposed(const reading *r, merlin_capture *c)
         (double)r->exposure_ratio, c->name[first], others, count > 1 ? "have" : "has");
 }
 
+static void note_unexposed_ambient(const reading *r, merlin_capture *c)
+{
+    warnings_add(&c->noticed, "exposures_unknown",
+                 "by their EXIF some pictures were exposed up to %.3g times as much as others, but the ambient picture "
+                 "%s has no exposure, so that all of it is subtracted from each, and normals may be many degrees off: "
+                 "keep its EXIF",
+                 (double)r->exposure_ratio, r->ambient_path);
+}
+
 /* Takes exposures that differ for strengths of the lights: values are divided by either. */
 static void even_out(const reading *r, merlin_capture *c)
 {
     static const float differ = 1.02f;
     double sum = 0;
-    if (c->intensities_listed || !(r->exposure_ratio > differ)) return;
+    if (!(r->exposure_ratio > differ)) return;
+    if (r->exposures_known && r->ambient_path && !(r->ambient_exposure > 0)) note_unexposed_ambient(r, c);
+    if (c->intensities_listed) return;
     if (!r->exposures_known) {
         note_unexposed(r, c);
         return;

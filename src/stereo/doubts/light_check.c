@@ -316,7 +316,7 @@ status pst_check_lights(const merlin_capture *c, const merlin_surface *s, warnin
     check all = {.capture = c, .surface = s};
     status result = pst_light_fit_new(c, s, &all.fit);
     if (result != OK) return result;
-    result = check_all(&all, out);
+    if (all.fit.energy > 0) result = check_all(&all, out);
     free(all.light);
     free(all.trial);
     pst_light_fit_free(&all.fit);

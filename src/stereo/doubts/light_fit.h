@@ -21,7 +21,7 @@ typedef struct pst_light_fit {
     float *strength;                   /* total: strength of the light, included in: */
     vec3 *light;                       /* total: vector toward the light, with its strength at the object as length */
     double *gram;                      /* count × count: products of pictures, with the same weight for each pixel */
-    double energy;                     /* trace of the gram matrix */
+    double energy;                     /* trace of the gram matrix; 0: the pictures are too dark to tell */
 } pst_light_fit;
 
 /* Prepares the fit. Lights found with the surface are used if there are any; near lights count as distant ones above

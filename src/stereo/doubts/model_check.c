@@ -89,11 +89,6 @@ static status check_distance(const check *c, double *best, double *factor)
     return s;
 }
 
-static double degrees_wide(const merlin_capture *c)
-{
-    return 2 * atan(0.5 * c->width / (double)c->camera.focal) / (double)DEGREE;
-}
-
 static double focal_of(const check *c, double degrees)
 {
     return (double)c->small.camera.focal * tan(0.5 * c->degrees * (double)DEGREE) / tan(0.5 * degrees * (double)DEGREE);
@@ -245,7 +240,7 @@ status pst_check_model(const merlin_capture *c, const merlin_surface *s, warning
 {
     /* other lights and lenses are tried by the solver of the same lights, without a network */
     check all = {.method = s->method == MERLIN_STEREO_NFPS ? MERLIN_STEREO_NEAR : s->method,
-                 .degrees = degrees_wide(c)};
+                 .degrees = (double)pinhole_field_of_view(&c->camera, c->width)};
     if (c->lighting == MERLIN_UNKNOWN_LIGHTS || c->count < FEWEST) return OK;
     int picture[PICTURES];
     status result = pst_shrink_to(c, SMALL, PICTURES, picture, &all.small);

@@ -88,14 +88,6 @@ static void fill_first(near_job *job)
         if (expected->data[p->pixel[i]] > 0) job->out->depth.data[p->pixel[i]] = expected->data[p->pixel[i]];
 }
 
-static float light_reach(const merlin_capture *c)
-{
-    float sum = 0;
-    for (int k = 0; k < c->count; k++)
-        sum += vec3_length(vec3_of(c->light[k].position));
-    return sum / (float)c->count;
-}
-
 /* Computes the cost of the sampled pixels with the depth multiplied by a factor. */
 static status cost_at(const near_job *job, float scale, bool anew, double *cost)
 {
@@ -276,7 +268,7 @@ static status find_depth(near_job *job)
     const pst_problem *p = job->problem;
     float distance = p->capture->camera.distance;
     job->held_at = distance;
-    job->camera.distance = distance > 0 ? distance : fmaxf(light_reach(p->capture), 1e-6f);
+    job->camera.distance = distance > 0 ? distance : pst_lights_reach(p->capture);
     fill_plane(p, job->camera.distance, &job->out->depth);
     float scale = 1;
     status s = distance > 0 ? OK : best_scale(job, 1.3f, 8, true, &scale);
@@ -451,7 +443,7 @@ status pst_near_distance(const pst_problem *p, float about, float *distance)
     near_job job = {0};
     status s = smaller_problem_new(p, SMALL, &small);
     if (s == OK) s = job_new(&small.problem, &surface, &job);
-    job.camera.distance = about > 0 ? about : fmaxf(light_reach(p->capture), 1e-6f);
+    job.camera.distance = about > 0 ? about : pst_lights_reach(p->capture);
     if (s == OK) fill_first(&job);
     for (int i = about > 0 ? 1 : 0; s == OK && i < 3; i++) {
         float scale = 1;
