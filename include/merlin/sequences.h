@@ -76,6 +76,8 @@ merlin_status merlin_sequence_new(merlin_model *model, const merlin_params *para
  * may be NULL. After a failure the sequence cannot go on. */
 merlin_status merlin_sequence_estimate(merlin_sequence *sequence, merlin_frame *frame, merlin_maps *maps,
                                        merlin_frame_facts *facts);
+/* Leaves the last frame out of what is reported, as its files could not be written. The flicker still has it. */
+void merlin_sequence_drop_last(merlin_sequence *sequence);
 /* Measures the flicker so far. */
 void merlin_sequence_flicker(const merlin_sequence *sequence, merlin_flicker *out);
 /* Lists what one should know about the sequence: gaps, cuts, a lost object, an interlaced video, and the doubts of its

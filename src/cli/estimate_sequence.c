@@ -61,7 +61,9 @@ static status open_frames(const estimate_request *r, int count, char *const *nam
 /* Composes the default place of the results: the name without number and ending + ".merlin". */
 static char *output_of(const char *name)
 {
-    char *stem = strdup(name), *made = NULL;
+    const char *last = file_name_of(name);
+    const bool dots = strcmp(last, ".") == 0 || strcmp(last, "..") == 0; /* a folder by no name of its own */
+    char *stem = dots ? realpath(name, NULL) : strdup(name), *made = NULL;
     if (!stem) return NULL;
     size_t length = strlen(stem);
     const size_t folder = (size_t)(file_name_of(stem) - stem);
@@ -114,6 +116,27 @@ static void plan(const sequence_work *w, const merlin_frames_head *head)
     watch_tell(r->watch, "reading", 0);
 }
 
+/* Removes the list of an earlier run, whose frames are about to be replaced. */
+static status drop_report(const sequence_work *w)
+{
+    char *path = file_join(w->output, REPORT_FILE);
+    if (!path) return fail(MERLIN_NO_MEMORY, "no memory for file names");
+    const bool failed = file_exists(path) && unlink(path) != 0;
+    status s = failed ? fail(MERLIN_CANNOT_WRITE, "cannot replace %s", path) : OK;
+    free(path);
+    return s;
+}
+
+/* Writes the files of a frame, which is not reported without them. */
+static status write_frame(sequence_work *w, const estimate_write *files, merlin_maps *maps)
+{
+    status s = w->done == 0 ? drop_report(w) : OK;
+    if (s == OK) s = estimate_write_files(files, maps, false, &w->written);
+    if (s != OK) merlin_sequence_drop_last(w->sequence);
+    merlin_maps_free(maps);
+    return s;
+}
+
 /* Estimates a frame, which is empty afterwards, and writes its folder: all of its files or none. */
 static status do_frame(sequence_work *w, merlin_frame *frame)
 {
@@ -131,8 +154,7 @@ static status do_frame(sequence_work *w, merlin_frame *frame)
     }
     if (s == OK) {
         const estimate_write files = {w->request, label, folder, inputs, NULL};
-        s = estimate_write_files(&files, &maps, false, &w->written);
-        merlin_maps_free(&maps);
+        s = write_frame(w, &files, &maps);
     }
     merlin_frame_free(frame);
     free(label);
@@ -151,17 +173,6 @@ static status write_report(sequence_work *w)
     return s == OK ? staging_commit(t, &w->written) : staging_abort(t, s);
 }
 
-/* Removes the list of an earlier run, whose frames are about to be replaced. */
-static status drop_report(const sequence_work *w)
-{
-    char *path = file_join(w->output, REPORT_FILE);
-    if (!path) return fail(MERLIN_NO_MEMORY, "no memory for file names");
-    const bool failed = file_exists(path) && unlink(path) != 0;
-    status s = failed ? fail(MERLIN_CANNOT_WRITE, "cannot replace %s", path) : OK;
-    free(path);
-    return s;
-}
-
 static status do_frames(sequence_work *w)
 {
     merlin_frame frame = {.number = 0};
@@ -169,8 +180,7 @@ static status do_frames(sequence_work *w)
         plan(w, merlin_frames_about(w->frames));
         status s = cli_interrupted() ? fail(MERLIN_STOPPED, "stopped") : merlin_frames_next(w->frames, &frame);
         if (s != OK || !frame.image.data) return s;
-        if (w->done == 0) s = drop_report(w);
-        if (s == OK) s = do_frame(w, &frame);
+        s = do_frame(w, &frame);
         if (s != OK) return s;
     }
 }

@@ -42,6 +42,7 @@ static void forget(merlin_sequence *q)
     q->crop = (sequence_crop){.begun = false};
     q->shift = (sequence_shift){0, 0};
     q->gain = 0;
+    *q->network = 0;
     q->begun = false;
 }
 
@@ -142,7 +143,9 @@ static status find(step *w)
 static void find_shot(merlin_sequence *q, const char *path)
 {
     merlin_shot shot;
-    if (path && img_format_of(path).is_read && merlin_shot_read(path, &shot) == OK) q->params.shot = shot;
+    if (!path || !img_format_of(path).is_read || merlin_shot_read(path, &shot) != OK) return;
+    q->params.shot = shot;
+    q->params.hint.reduced = shot.reduced;
 }
 
 static status estimate(step *w, merlin_maps *maps)
@@ -211,6 +214,7 @@ static status note(merlin_sequence *q, const step *w, const merlin_maps *maps)
                                           .crop = {maps->crop.x, maps->crop.y, maps->crop.side},
                                           .gain = maps->gain,
                                           .confidence = maps->mask_confidence};
+    q->last_doubts = maps->doubts;
     for (int i = 0; i < SEQUENCE_DOUBTS; i++) {
         const unsigned doubt = 1u << i;
         if (!(maps->doubts & doubt)) continue;
@@ -274,6 +278,15 @@ merlin_status merlin_sequence_new(merlin_model *model, const merlin_params *para
     q->apart = how && how->apart;
     *out = q;
     return OK;
+}
+
+void merlin_sequence_drop_last(merlin_sequence *sequence)
+{
+    if (!sequence || sequence->count == 0) return;
+    sequence->count--;
+    for (int i = 0; i < SEQUENCE_DOUBTS; i++)
+        sequence->doubts[i].frames -= (sequence->last_doubts >> i) & 1;
+    sequence->last_doubts = 0;
 }
 
 void merlin_sequence_flicker(const merlin_sequence *sequence, merlin_flicker *out)

@@ -40,6 +40,7 @@ struct merlin_sequence {
     flicker_meter meter;
     sequence_frame *frames;
     size_t count;
+    unsigned last_doubts; /* of the last frame */
     sequence_doubt doubts[SEQUENCE_DOUBTS];
 };
 

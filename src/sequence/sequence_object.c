@@ -63,7 +63,7 @@ status sequence_object(const object_request *r, float *confidence, merlin_object
     facts->overlap = 1;
     const bool given = r->mask->data != NULL;
     if (!given && r->before) return follow(r, confidence, out, facts);
-    status s = merlin_object_find(r->photo, given ? r->mask : NULL, given ? NULL : r->hint, out);
+    status s = merlin_object_find(r->photo, given ? r->mask : NULL, r->hint, out);
     if (s != OK) return s;
     facts->object = given ? MERLIN_OBJECT_GIVEN : MERLIN_OBJECT_FOUND;
     *confidence = out->confidence;

@@ -110,6 +110,20 @@ refuses 1 'one size; frames before it that are complete in sizes.merlin: 1' esti
 present sizes.merlin/sequence.json sizes.merlin/frame_0001/maps.exr
 absent sizes.merlin/frame_0002
 
+echo "relit frames do not take the place of the photographs"
+refuses 1 'still: its frame_0001.png is no earlier result, for there is no relit.mp4' "$MERLIN" relight steady --light 0.7,0.3,-0.4 -o still
+cmp -s still/frame_0001.png gap/frame_0001.png || complain "a photograph was replaced"
+
+echo "a frame that cannot be written is not listed, and a list stays as long as its frames do"
+mkdir halves
+touch halves/frame_0002
+"$MERLIN" estimate --model merlin-point --size 64 --views 1 --sequence still -o halves >stdout 2>stderr && complain "a file was taken for a folder"
+present halves/frame_0001/maps.exr
+grep -q '"number":1,' <(tr -d '\n\t ' <halves/sequence.json) || complain "the first frame is not listed"
+grep -q '"number":2,' <(tr -d '\n\t ' <halves/sequence.json) && complain "a frame is listed that is not there"
+refuses 2 'lies outside' estimate --sequence still -o steady --point 99999,9
+present steady/sequence.json
+
 echo "an interrupted sequence leaves complete frames"
 "$MERLIN" estimate --sequence still -o stopped >/dev/null 2>stderr &
 worker=$!

@@ -3,6 +3,7 @@
  * own are not replaced. */
 #include <ctype.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
@@ -45,10 +46,35 @@ static status check_numbered(const char *folder, const char *kind, const char *e
     return map_names_refuse(folder, name, sheet);
 }
 
+/* Tells whether a folder is the one within a sequence's that its pictures are usually written to. */
+static bool is_within(const merlin_sequence_files *frames, const char *folder)
+{
+    char *sequence = file_folder_of(frames->at[0].folder), *usual = sequence ? file_join(sequence, "relit") : NULL;
+    const bool is = usual && file_is_same(usual, folder);
+    free(usual);
+    free(sequence);
+    return is;
+}
+
+/* Refuses to replace frames beside which the video is missing that every run with an encoder writes with them: they are
+ * called as a sequence's own photographs often are. */
+static status check_frames(const relight_job *job)
+{
+    if (map_names_is_in(job->output, "relit.mp4") || is_within(job->frames, job->output)) return OK;
+    for (size_t i = 0; i < job->frames->count; i++) {
+        char name[64], file[80];
+        merlin_sequence_folder(job->frames->at[i].number, name, sizeof name);
+        snprintf(file, sizeof file, "%s%s", name, relight_ending(job));
+        if (map_names_is_in(job->output, file)) return map_names_refuse(job->output, file, "relit.mp4");
+    }
+    return OK;
+}
+
 status relight_check_replaced(const relight_job *job)
 {
     status s = OK;
-    if (job->frames || !file_is_folder(job->output)) return OK;
+    if (!file_is_folder(job->output)) return OK;
+    if (job->frames) return check_frames(job);
     if (relight_count_lights(job) > 1) s = check_numbered(job->output, "relit_", relight_ending(job), "relit.png");
     return s == OK && job->orbit ? check_numbered(job->output, "frame_", ".png", "orbit.png") : s;
 }
