@@ -87,10 +87,13 @@ merlin_status merlin_relighter_place(const merlin_relighter *relighter, const me
 float merlin_relighter_white(const merlin_relighter *relighter);
 merlin_status merlin_relighter_set_white(merlin_relighter *relighter, float white);
 /* Measures a white that all but a thousandth of the object's values are below under each of these lamps, as is a white
- * matte surface that faces one of them at the object's centre; without lamps, in this environment (or NULL). It ignores
- * shadows and bounces, and so takes a fraction of the time of a picture. */
+ * matte surface that faces one of them at the object's centre, in this environment (or NULL), or in that alone without
+ * lamps. It ignores shadows and bounces, and so takes a fraction of the time of a picture. */
 merlin_status merlin_relighter_meter(merlin_relighter *relighter, const merlin_lamp *lamps, size_t count,
                                      const merlin_environment *environment, float *white);
+/* Does the same for one picture by all of them, as the sum of what each needs. */
+merlin_status merlin_relighter_meter_together(merlin_relighter *relighter, const merlin_lamp *lamps, size_t count,
+                                              const merlin_environment *environment, float *white);
 
 #ifdef __cplusplus
 }

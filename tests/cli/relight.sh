@@ -233,6 +233,8 @@ succeeds open relight disc.merlin --env room.hdr --no-shadows -o open
 cmp -s room/relit_000.png open/relit_000.png && complain "--no-shadows makes no difference under surroundings"
 succeeds whole relight disc.merlin --env room.hdr --env-exposure 1 --light 0.5,0.2,-0.4 -o whole
 cmp -s room/relit_000.png whole/relit_000.png && complain "a light beside the surroundings makes no difference"
+succeeds '"warnings":\[\]' relight disc.merlin --env room.hdr --env-exposure 6 --light 0.5,0.2,-0.4 --power 0.001 --exposure auto \
+    -o metered --json # by the lamp alone it would be burnt out
 succeeds around relight disc.merlin --env room.hdr --orbit 3 -o around
 present around/relit_000.png around/frame_00{0..2}.png around/orbit.webp
 cmp -s around/frame_000.png around/frame_001.png && complain "the surroundings do not go round"

@@ -153,6 +153,11 @@ static void lamps_add_and_white_divides(void **state)
     merlin_relighter *r = relighter_of(f, &maps, MERLIN_BY_BRDF_DIRECT);
     assert_true(merlin_relighter_white(r) > 0);
     assert_int_equal(merlin_relighter_meter(r, lamps, 2, NULL, &white), MERLIN_OK);
+    float each[2] = {0}, together = 0;
+    for (int i = 0; i < 2; i++)
+        assert_int_equal(merlin_relighter_meter(r, lamps + i, 1, NULL, each + i), MERLIN_OK);
+    assert_int_equal(merlin_relighter_meter_together(r, lamps, 2, NULL, &together), MERLIN_OK);
+    assert_float_equal(together, each[0] + each[1], 1e-6f * together);
     assert_int_equal(merlin_relighter_set_white(r, 4 * white), MERLIN_OK); /* nothing is clamped */
     assert_true(merlin_relighter_white(r) == 4 * white);
     assert_int_equal(merlin_relighter_render_lamps(r, &lamps[0], 1, NULL, &one), MERLIN_OK);

@@ -24,21 +24,12 @@ static void gather(const relight_job *job, merlin_lamp *all)
         all[i].power[0] = all[i].power[1] = all[i].power[2] = 1;
 }
 
-/* Meters lamps for one picture each, or for one picture of all together: what each needs is then added up, as their
- * light does. */
+/* Meters lamps for one picture each, or for one picture of all together. */
 static status meter(const relight_work *w, const merlin_lamp *all, size_t count, float *white)
 {
     const relight_job *job = w->job;
-    if (!job->together) return merlin_relighter_meter(w->relighter, all, count, job->environment, white);
-    float sum = 0;
-    status s = OK;
-    for (size_t i = 0; i < count && s == OK; i++) {
-        float one = 0;
-        s = merlin_relighter_meter(w->relighter, all + i, 1, job->environment, &one);
-        sum += one;
-    }
-    if (s == OK) *white = sum;
-    return s;
+    return job->together ? merlin_relighter_meter_together(w->relighter, all, count, job->environment, white)
+                         : merlin_relighter_meter(w->relighter, all, count, job->environment, white);
 }
 
 static status expose(relight_work *w)

@@ -186,3 +186,22 @@ merlin_status merlin_relighter_meter(merlin_relighter *st, const merlin_lamp *la
     free(taken);
     return s;
 }
+
+merlin_status merlin_relighter_meter_together(merlin_relighter *st, const merlin_lamp *lamps, size_t count,
+                                              const merlin_environment *environment, float *white)
+{
+    float sum = 0;
+    status s = api_needs(__func__, st && white && (lamps || count == 0));
+    for (size_t i = 0; i < count && s == OK; i++) {
+        float one = 0;
+        s = merlin_relighter_meter(st, lamps + i, 1, NULL, &one);
+        sum += one;
+    }
+    if (s == OK && (environment || count == 0)) {
+        float around = 0;
+        s = merlin_relighter_meter(st, NULL, 0, environment, &around);
+        sum += around;
+    }
+    if (s == OK) *white = sum;
+    return s;
+}

@@ -43,6 +43,7 @@ static status note_lamp(const relighter *s, const lamp *l, histogram *h)
     status result = surface_shade_lamp(&s->low, l, &radiance);
     for (size_t i = 0; result == OK && i < img_value_count(&radiance); i += 3)
         vec3_put(vec3_mul(vec3_of(radiance.data + i), l->tint), radiance.data + i);
+    if (result == OK && s->environment) surface_add_ambient(&s->low, (const float(*)[3])s->environment->sh, &radiance);
     if (result == OK) note(h, &radiance, &s->low.mask);
     img_free(&radiance);
     return result;

@@ -42,7 +42,10 @@ form_file *form_add_file(form *f, const char *key, const char *given_name)
     f->files = files;
     snprintf(added.key, sizeof added.key, "%s", key);
     safe_name(given_name, added.name);
-    if (is_taken(f, added.name)) safe_name_number(added.name, f->file_count + 1);
+    for (size_t number = f->file_count + 1; is_taken(f, added.name); number++) {
+        safe_name(given_name, added.name);
+        safe_name_number(added.name, number);
+    }
     files[f->file_count] = added;
     return &files[f->file_count++];
 }

@@ -115,6 +115,14 @@ static status check_lights(const form *f, const relight_request *r)
     return s;
 }
 
+/* Keeps the maps' name for the maps. */
+static status check_names(const form *f)
+{
+    const form_file *room = form_find_file(f, "environment");
+    if (!room || strcmp(room->name, MAPS) != 0) return OK;
+    return fail(MERLIN_WRONG_USE, "an environment is not called %s, as maps are", MAPS);
+}
+
 static status check(const form *f, const work_limits *limits, void **request)
 {
     static const form_key known[] = {PHOTO_KEYS,
@@ -147,6 +155,7 @@ static status check(const form *f, const work_limits *limits, void **request)
     if (s == OK) s = form_flag(f, "found", &r->found);
     if (s == OK) s = form_integer(f, "side", LEAST_SIDE, MOST_SIDE, &r->side);
     if (s == OK) s = form_choice(f, "by", ways, sizeof ways / sizeof *ways, &way);
+    if (s == OK) s = check_names(f);
     r->how = (merlin_relighting)way;
     if (s == OK) s = check_lights(f, r);
     return s == OK ? check_changes(f, r) : s;
@@ -231,15 +240,24 @@ static status make_all(const relight_work *k)
     return s;
 }
 
-/* Prepares for a captured surface, which has no gloss, and no exposure of a photograph. */
+/* Prepares for a captured surface, which has no gloss, and no exposure of a photograph: white is that of lamps of power
+ * 1, so that a stronger one is brighter. */
 static status prepare_captured(const relight_work *k)
 {
     const relight_request *r = k->request;
+    const size_t count = (size_t)r->lamp_count;
     float white = 1;
     if (r->how == MERLIN_BY_NETWORK) return fail(MERLIN_BAD_INPUT, "a captured surface is not relit by network");
     status s = merlin_relighter_make_matte(k->relighter);
-    if (s != OK || r->lamp_count == 0) return s;
-    s = merlin_relighter_meter(k->relighter, r->lamps, (size_t)r->lamp_count, NULL, &white);
+    if (s != OK || count == 0) return s;
+    merlin_lamp *usual = malloc(count * sizeof *usual);
+    if (!usual) return fail(MERLIN_NO_MEMORY, "no memory for %zu lamps", count);
+    memcpy(usual, r->lamps, count * sizeof *usual);
+    for (size_t i = 0; i < count; i++)
+        usual[i].power[0] = usual[i].power[1] = usual[i].power[2] = 1;
+    s = r->together ? merlin_relighter_meter_together(k->relighter, usual, count, k->room, &white)
+                    : merlin_relighter_meter(k->relighter, usual, count, k->room, &white);
+    free(usual);
     return s == OK ? merlin_relighter_set_white(k->relighter, white) : s;
 }
 

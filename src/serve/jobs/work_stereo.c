@@ -100,6 +100,9 @@ static status check_together(const form *f, const stereo_request *r)
 static status read_seeing(const form *f, stereo_request *r)
 {
     static const char *const of_model[] = {"point", "box", "size", "views"};
+    if (r->universal && (r->params.keep_edges || r->distance > 0))
+        return fail(MERLIN_WRONG_USE, "%s is for pictures with lights, or by method uncalibrated",
+                    r->params.keep_edges ? "keep_edges" : "distance");
     if (r->universal) return photo_form_seeing(f, &r->photo_params);
     for (size_t i = 0; i < sizeof of_model / sizeof *of_model; i++)
         if (form_value(f, of_model[i]))

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Length reserved for a number in front, and length of the end of a long name that is kept. */
+/* Length reserved for a number, and length of the end of a long name that is kept. */
 enum { FOR_NUMBER = 12, END = 32 };
 
 static bool is_harmless(unsigned char c)
@@ -33,5 +33,8 @@ void safe_name_number(char name[SAFE_NAME], size_t number)
 {
     char old[SAFE_NAME];
     memcpy(old, name, sizeof old);
-    snprintf(name, SAFE_NAME, "%zu-%.*s", number, SAFE_NAME - 1 - FOR_NUMBER, old);
+    const char *dot = strrchr(old, '.');
+    const size_t length = strlen(old), stem = dot ? (size_t)(dot - old) : length;
+    const size_t ending = length - stem < END ? length - stem : END, most = SAFE_NAME - 1 - FOR_NUMBER - ending;
+    snprintf(name, SAFE_NAME, "%.*s_%zu%.*s", (int)(stem < most ? stem : most), old, number, (int)ending, old + stem);
 }
