@@ -85,6 +85,8 @@ merlin_status merlin_capture_new(const merlin_capture_params *params, const merl
 /* Adds a picture: 1 or 3 channels of linear light in [0, 1], the same for all pictures, of the mask's size; values from
  * 0.98 on count as saturated. light NULL: it is unknown. */
 merlin_status merlin_capture_add(merlin_capture *capture, const merlin_image *picture, const merlin_light *light);
+/* Adds a picture's file, read as those of a folder are. linear: 1: 8-bit values are linear, not sRGB. */
+merlin_status merlin_capture_add_file(merlin_capture *capture, const char *path, int linear, const merlin_light *light);
 /* Returns what is known of the lights. */
 merlin_lighting merlin_capture_lighting(const merlin_capture *capture);
 void merlin_capture_free(merlin_capture *capture);

@@ -112,13 +112,18 @@ class Capture:
 
     def add(self, picture: Any, light: Optional[Light] = None, *, linear: Optional[bool] = None) -> None:
         """Adds a picture, a file or an array of H x W or H x W x 3, all alike and of the mask's size; linear values in
-        [0, 1], from 0.98 on they count as saturated. light: None: nothing is known of it."""
-        color, _alpha = pictures.picture(picture, linear, "a picture of a capture")
+        [0, 1], from 0.98 on they count as saturated. light: None: nothing is known of it. linear: of an array as of
+        Model.estimate; True: 8-bit values of a file are linear, which otherwise is read as those of a folder are."""
+        known = None if light is None else ctypes.byref(light._struct())
+        if is_path(picture):
+            name = path_bytes(picture)
+            check("capture_add_file", self._owner.struct, name, int(bool(linear)), known, path=os.fsdecode(name))
+            return
+        color, _alpha = pictures.from_array(picture, linear, "a picture of a capture")
         image, kept = color.struct, None
-        if not is_path(picture) and (np.ndim(picture) == 2 or np.shape(picture)[2] == 1):
+        if np.ndim(picture) == 2 or np.shape(picture)[2] == 1:
             image, kept = pictures.image_for(view(color, color.struct)[:, :, 0])
-        check("capture_add", self._owner.struct, ctypes.byref(image),
-              None if light is None else ctypes.byref(light._struct()))
+        check("capture_add", self._owner.struct, ctypes.byref(image), known)
         del kept
 
     def stereo(self, method: str = "auto", *, keep_edges: bool = False, integrate: bool = False, iterations: int = 0,

@@ -101,9 +101,11 @@ def from_file(path: PathLike) -> Tuple[Owner, Owner]:
 
 def picture(source: Any, linear: Optional[bool] = None, what: str = "a photograph") -> Tuple[Owner, Owner]:
     """A file or an array, as an image and its alpha."""
-    if is_path(source):
-        return from_file(source)
-    return from_array(source, linear, what)
+    if not is_path(source):
+        return from_array(source, linear, what)
+    if linear is not None:
+        raise WrongUseError("linear is of arrays: a picture's file says what its values are")
+    return from_file(source)
 
 
 def _coverage(source: Any, what: str) -> np.ndarray:

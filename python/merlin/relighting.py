@@ -36,8 +36,8 @@ def relight(model: "Model", maps: "Maps", light: Any, environment: Any, turn: fl
     if light is not None:
         warn_of_model(model, maps, how)
     if isinstance(light, str):
-        if light != "found" or environment is not None:
-            raise WrongUseError('light is a place, lamps or "found", and the latter stands alone')
+        if light != "found" or environment is not None or exposure:
+            raise WrongUseError('light is a place, lamps or "found", and the latter stands alone, or with turn')
         out = new_image()
         check("relight_found", model._handle.struct, maps._sound(), real(turn, "turn"), how, out.at)
         return view(out, out.struct)

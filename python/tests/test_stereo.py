@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Surfaces from pictures under many lights, and the lights from pictures of a ball."""
+import struct
 import warnings
+import zlib
 
 import numpy as np
 import pytest
@@ -44,6 +46,27 @@ def test_files_and_folders_are_read(sphere, tmp_path):
     told = []
     surface = merlin.stereo(tmp_path, progress=lambda stage, share: told.append(stage))
     assert error_degrees(surface, normal, inside) < 3 and {"reading", "solving", "integrating"} <= set(told)
+
+
+def write_linear(path, values):
+    """A grey PNG of 16 bits, which says nothing of its values."""
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    height, width = values.shape
+    rows = b"".join(b"\0" + row.astype(">u2").tobytes() for row in np.round(values * 65535))
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 16, 0, 0, 0, 0))
+                     + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+
+
+def test_files_are_read_as_those_of_a_folder_are(sphere, tmp_path):
+    """Of 16 bits values are linear, of 8 where that is said."""
+    lights, pictures, normal, inside = sphere
+    paths = [tmp_path / f"{i}.png" for i in range(len(lights))]
+    for path, picture in zip(paths, pictures):
+        write_linear(path, picture)
+    assert error_degrees(merlin.stereo(paths, lights, mask=inside, method="ls"), normal, inside) < 2
+    with pytest.raises(merlin.WrongUseError, match="linear is of arrays"):
+        merlin.find_object(paths[0], linear=True)
 
 
 def test_unknown_lights_are_found(sphere):

@@ -69,6 +69,17 @@ static status told(const export_job *j, double share)
 
 /* ---- computed maps ---- */
 
+/* Sets occlusion to 1 beside the object. */
+static status clear_outside(const img *mask, img *occlusion)
+{
+    img larger = {0};
+    status s = img_resize(mask, occlusion->width, occlusion->height, &larger);
+    for (size_t i = 0; s == OK && i < img_value_count(occlusion); i++)
+        if (!(larger.data[i] > 0)) occlusion->data[i] = 1;
+    img_free(&larger);
+    return s;
+}
+
 static status compute_occlusion(const merlin_maps *maps, int side, img *out)
 {
     surface fine = {0}, coarse = {0};
@@ -84,6 +95,7 @@ static status compute_occlusion(const merlin_maps *maps, int side, img *out)
     } else if (s == OK) {
         s = fill_outside(&small, &fine.mask);
         if (s == OK) s = img_resize(&small, side, side, out);
+        if (s == OK) s = clear_outside(&fine.mask, out);
     }
     surface_free(&coarse);
     surface_free(&fine);

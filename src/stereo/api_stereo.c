@@ -8,6 +8,7 @@
 
 #include "base/api_needs.h"
 #include "base/progress.h"
+#include "image/read/read.h"
 #include "stereo/doubts/capture_doubts.h"
 #include "stereo/guided.h"
 #include "stereo/integrate/surface_statistics.h"
@@ -169,6 +170,17 @@ merlin_status merlin_capture_add(merlin_capture *capture, const merlin_image *pi
     capture->channels = picture->channels;
     pst_capture_see(capture, capture->field_of_view, capture->camera.distance);
     return pst_capture_add(capture, picture, &taken);
+}
+
+merlin_status merlin_capture_add_file(merlin_capture *capture, const char *path, int linear, const merlin_light *light)
+{
+    img picture = {0};
+    int bits;
+    status s = api_needs(__func__, capture && path);
+    if (s == OK) s = img_read_samples(path, !linear, &picture, &bits);
+    if (s == OK) s = merlin_capture_add(capture, &picture, light);
+    img_free(&picture);
+    return s;
 }
 
 merlin_lighting merlin_capture_lighting(const merlin_capture *capture)

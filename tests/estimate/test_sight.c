@@ -53,7 +53,8 @@ static void what_cannot_be_is_not_known(void **state)
     const crop_square crop = {0, 0, 100};
     assert_true(sight_of(0, 0, 100, 100, crop).lens.fov == 0);
     assert_true(sight_of(0, 5000, 100, 100, crop).lens.fov == 0);
-    assert_true(sight_of(149, 0, 100, 100, crop).lens.fov == 0);
+    assert_true(sight_of(149, 0, 100, 100, crop).lens.fov == 130); /* what is said is not passed over */
+    assert_true(sight_of(20, 0, 9000, 9000, crop).lens.fov == 1);
 }
 
 /* Under a flash a surface that faced the line of sight that was taken for granted faces the true one. */

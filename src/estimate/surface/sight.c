@@ -6,7 +6,8 @@
 #include "estimate/surface/surface.h"
 #include "optics/pinhole.h"
 
-/* Limits of a crop's field of view in degrees; others come from wrong numbers. */
+/* Limits of a crop's field of view in degrees. Others come from wrong numbers in EXIF; where somebody says so, the
+ * nearest one is taken. */
 static const float NARROWEST = 1, WIDEST = 130;
 
 /* Returns the distance of the image plane in pixels; 0: unknown. */
@@ -25,6 +26,7 @@ sight sight_of(float fov, float focal_35mm, int width, int height, crop_square c
            up = (height / 2.0 - crop.y - crop.side / 2.0) / focal;
     double far = sqrt(1 + right * right + up * up); /* distance of the crop's middle, where the plane's is 1 */
     float wide = (float)(2 * atan(crop.side / (2 * focal * far)) / (double)DEGREE);
+    if (fov > 0) wide = fminf(fmaxf(wide, NARROWEST), WIDEST);
     if (!(wide >= NARROWEST && wide <= WIDEST)) return how;
     how.lens = (camera_lens){wide, {(float)(right / far), (float)(up / far)}};
     return how;
