@@ -18,3 +18,11 @@ const vips_functions *vips(void)
 {
     return &functions;
 }
+
+bool vips_pass_on(VipsImage **image, VipsImage *const *made, int failed)
+{
+    if (failed) return false;
+    functions.g_object_unref(*image);
+    *image = *made;
+    return true;
+}

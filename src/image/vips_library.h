@@ -7,6 +7,7 @@
 #ifndef MERLIN_IMAGE_VIPS_LIBRARY_H
 #define MERLIN_IMAGE_VIPS_LIBRARY_H
 
+#include <stdbool.h>
 #include <vips/vips.h>
 
 #include "base/status.h"
@@ -86,5 +87,9 @@ typedef struct vips_functions {
 status vips_load(void);
 /* Returns the functions; to be called after vips_begin. */
 const vips_functions *vips(void);
+
+/* Replaces *image by the result of an operation; returns false if that failed. made is a pointer so that the
+ * operation's call can be the last argument: the order in which arguments are evaluated is unspecified. */
+bool vips_pass_on(VipsImage **image, VipsImage *const *made, int failed);
 
 #endif

@@ -5,6 +5,8 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
+#include "base/number.h"
+
 /* Most pixels whose median is taken, and fewest that tell anything. */
 enum { MOST_SAMPLES = 16384, FEWEST_SAMPLES = 64 };
 /* Encoded values between which a pixel tells the exposure: darker ones are noise, brighter ones may be burnt out. */
@@ -56,16 +58,10 @@ float sequence_brightness(const img *before, const img *now, const img *mask, se
     return then > 0 && today > 0 ? (float)(then / today) : 1;
 }
 
-static int by_value(const void *one, const void *other)
-{
-    const float a = *(const float *)one, b = *(const float *)other;
-    return (a > b) - (a < b);
-}
-
 float sequence_median(float *values, size_t count)
 {
     if (!count) return 0;
-    qsort(values, count, sizeof *values, by_value);
+    qsort(values, count, sizeof *values, number_ascending);
     return values[count / 2];
 }
 

@@ -19,21 +19,17 @@ static bool is_whole(const text_word *w)
     return w->length > 0;
 }
 
-static bool is_number_like(const text_word *w)
-{
-    return w->kind != TEXT_WORD;
-}
-
 /* Tells whether a row is a heading: words, and perhaps whole numbers that count something, but neither a light's
  * numbers nor a picture's name. */
 static bool is_heading(const text_row *r)
 {
     const text_word *w = r->word;
-    if (is_number_like(&w[0])) return false;
+    if (text_is_number_like(&w[0])) return false;
     size_t n = r->count;
-    if (n > 3 && is_number_like(&w[n - 1]) && is_number_like(&w[n - 2]) && is_number_like(&w[n - 3])) return false;
+    if (n > 3 && text_is_number_like(&w[n - 1]) && text_is_number_like(&w[n - 2]) && text_is_number_like(&w[n - 3]))
+        return false;
     for (size_t i = 0; i < n; i++) {
-        if (is_number_like(&w[i]) && !is_whole(&w[i])) return false;
+        if (text_is_number_like(&w[i]) && !is_whole(&w[i])) return false;
         if (light_parser_is_file_name(w[i].at, w[i].length)) return false;
     }
     return true;

@@ -19,17 +19,12 @@ typedef struct run {
     bool name_behind;
 } run;
 
-static bool is_number_like(const text_word *w)
-{
-    return w->kind != TEXT_WORD;
-}
-
 static run run_of(const text_row *r)
 {
     size_t first = r->count, ahead = 0;
-    while (first > 0 && is_number_like(&r->word[first - 1]))
+    while (first > 0 && text_is_number_like(&r->word[first - 1]))
         first--;
-    while (ahead < r->count && is_number_like(&r->word[ahead]))
+    while (ahead < r->count && text_is_number_like(&r->word[ahead]))
         ahead++;
     if (r->count - first >= 3 || ahead < 3) return (run){first, r->count - first, false};
     return (run){0, ahead, true};
@@ -53,8 +48,9 @@ static status refuse_row(const light_parser *t, const text_row *r)
 {
     for (size_t i = 1; i < r->count && r->count <= MOST_WORDS; i++) {
         const text_word *w = &r->word[i];
-        bool beside = is_number_like(&r->word[i - 1]) || (i + 1 < r->count && is_number_like(&r->word[i + 1]));
-        if (r->count >= 3 && !is_number_like(w) && beside)
+        bool beside =
+            text_is_number_like(&r->word[i - 1]) || (i + 1 < r->count && text_is_number_like(&r->word[i + 1]));
+        if (r->count >= 3 && !text_is_number_like(w) && beside)
             return fail(MERLIN_BAD_INPUT, "%s:%d: \"%.*s\" is not a finite number; expected x y z", t->where, r->line,
                         (int)(w->length < 40 ? w->length : 40), w->at);
     }

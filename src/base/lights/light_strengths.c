@@ -11,16 +11,11 @@
 
 enum { TEXT_MOST = 1 << 22 };
 
-static bool is_number_like(const text_word *w)
-{
-    return w->kind != TEXT_WORD;
-}
-
 /* Returns the number of numeric words at the row's end; 0,95 counts as one. */
 static size_t count_numbers(const text_row *r)
 {
     size_t first = r->count;
-    while (first > 0 && is_number_like(&r->word[first - 1]))
+    while (first > 0 && text_is_number_like(&r->word[first - 1]))
         first--;
     return r->count - first;
 }

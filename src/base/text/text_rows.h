@@ -50,4 +50,10 @@ typedef struct text_rows {
 status text_rows_parse(const char *bytes, size_t size, const char *where, text_rows *out);
 void text_rows_free(text_rows *rows);
 
+/* Tells whether a word is a number, finite or not. */
+static inline bool text_is_number_like(const text_word *w)
+{
+    return w->kind != TEXT_WORD;
+}
+
 #endif

@@ -4,6 +4,7 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "base/parallel.h"
 
 /* A picture and its valid pixels, both at one level of the pyramid. */
@@ -36,18 +37,14 @@ static void pull_rows(void *context, size_t begin, size_t end)
     }
 }
 
-static int clamp_index(int i, int count)
-{
-    return i < 0 ? 0 : i >= count ? count - 1 : i;
-}
-
 /* Interpolates the coarse level bilinearly at the centre of a fine pixel. */
 static void sample(const img *coarse, int x, int y, float *out)
 {
     int x0 = (x - 1) >> 1, y0 = (y - 1) >> 1;
     float u = x & 1 ? 0.25f : 0.75f, v = y & 1 ? 0.25f : 0.75f;
-    int left = clamp_index(x0, coarse->width), right = clamp_index(x0 + 1, coarse->width);
-    int top = clamp_index(y0, coarse->height), bottom = clamp_index(y0 + 1, coarse->height);
+    const int last_column = coarse->width - 1, last_row = coarse->height - 1;
+    int left = clamp_int(x0, 0, last_column), right = clamp_int(x0 + 1, 0, last_column);
+    int top = clamp_int(y0, 0, last_row), bottom = clamp_int(y0 + 1, 0, last_row);
     const float *top_left = img_at(coarse, left, top), *top_right = img_at(coarse, right, top);
     const float *bottom_left = img_at(coarse, left, bottom), *bottom_right = img_at(coarse, right, bottom);
     for (int c = 0; c < coarse->channels; c++) {

@@ -10,16 +10,6 @@
 #include "image/vips_library.h"
 #include "image/vips_start.h"
 
-/* Replaces *image by the result of an operation; returns true on success. made is a pointer so that the operation's
- * call can be the last argument: the order in which arguments are evaluated is unspecified. */
-static bool replace(VipsImage **image, VipsImage *const *made, int failed)
-{
-    if (failed) return false;
-    vips()->g_object_unref(*image);
-    *image = *made;
-    return true;
-}
-
 typedef int loader(const char *path, VipsImage **out, ...);
 
 /* Returns the loader for a kind. libvips is not asked to find one: it offers an unknown file, such as a truncated one,
@@ -59,8 +49,8 @@ static bool divide_by_alpha(VipsImage **image, const picture_tiff_page *page)
 {
     VipsImage *made = NULL;
     if (vips()->image_get_format(*image) != VIPS_FORMAT_FLOAT || !page->premultiplied) return true;
-    return replace(image, &made, vips()->premultiply(*image, &made, NULL)) &&
-           replace(image, &made, vips()->unpremultiply(*image, &made, "max_alpha", 1.0, NULL));
+    return vips_pass_on(image, &made, vips()->premultiply(*image, &made, NULL)) &&
+           vips_pass_on(image, &made, vips()->unpremultiply(*image, &made, "max_alpha", 1.0, NULL));
 }
 
 /* Reads the code points (ITU-T H.273) that a HEIC or AVIF states. Its codes are always encoded for screens, whatever
@@ -129,9 +119,9 @@ static bool unpack(VipsImage **image)
 {
     VipsImage *made = NULL;
     VipsCoding coding = vips()->image_get_coding(*image);
-    if (coding == VIPS_CODING_RAD) return replace(image, &made, vips()->rad2float(*image, &made, NULL));
+    if (coding == VIPS_CODING_RAD) return vips_pass_on(image, &made, vips()->rad2float(*image, &made, NULL));
     if (coding != VIPS_CODING_LABQ) return true;
-    return replace(image, &made, vips()->colourspace(*image, &made, VIPS_INTERPRETATION_LAB, NULL));
+    return vips_pass_on(image, &made, vips()->colourspace(*image, &made, VIPS_INTERPRETATION_LAB, NULL));
 }
 
 /* Tells whether the samples are already sRGB, grey or linear light, so that our own tables decode them. */
@@ -166,10 +156,10 @@ static bool convert_space(VipsImage **image, const request *r)
     VipsImage *made = NULL;
     if (has_profile(*image, r)) {
         *r->profiled = true;
-        return replace(image, &made, !profile_apply(*image, &made));
+        return vips_pass_on(image, &made, !profile_apply(*image, &made));
     }
     if (is_plain(vips()->image_get_interpretation(*image))) return true;
-    return replace(image, &made, vips()->colourspace(*image, &made, VIPS_INTERPRETATION_sRGB, NULL));
+    return vips_pass_on(image, &made, vips()->colourspace(*image, &made, VIPS_INTERPRETATION_sRGB, NULL));
 }
 
 /* Tells whether a picture is converted to sRGB. What is only shown keeps its codes where they are grey or RGB. */
@@ -213,7 +203,8 @@ static status take_rows(VipsImage **image, const char *path, const picture_layou
 {
     VipsImage *made = NULL;
     picture_rows *rows;
-    if (layout->sample == PICTURE_FLOAT && !replace(image, &made, vips()->cast(*image, &made, VIPS_FORMAT_FLOAT, NULL)))
+    if (layout->sample == PICTURE_FLOAT &&
+        !vips_pass_on(image, &made, vips()->cast(*image, &made, VIPS_FORMAT_FLOAT, NULL)))
         return vips_refusal(MERLIN_BAD_INPUT, "read", path);
     status s = picture_rows_new(layout, how, color, alpha, &rows);
     if (s == OK && vips()->sink_disc(*image, put_rows, rows)) s = vips_refusal(MERLIN_BAD_INPUT, "read", path);

@@ -24,23 +24,15 @@ bool profile_is_fit(VipsImage *image)
     return channels > 0 && (channels == colours || (channels == 3 && colours == 1));
 }
 
-/* Replaces *image by the result of an operation; returns false if that failed. */
-static bool pass_on(VipsImage **image, VipsImage *const *made, int failed)
-{
-    if (failed) return false;
-    vips()->g_object_unref(*image);
-    *image = *made;
-    return true;
-}
-
 /* Converts grey to three equal colours. */
 static bool make_colours(VipsImage **image)
 {
     VipsImage *two = NULL, *three = NULL;
     if (vips()->bandjoin2(*image, *image, &two, NULL)) return false;
-    bool made = pass_on(image, &three, vips()->bandjoin2(two, *image, &three, NULL));
+    bool made = vips_pass_on(image, &three, vips()->bandjoin2(two, *image, &three, NULL));
     vips()->g_object_unref(two);
-    return made && pass_on(image, &two, vips()->copy(*image, &two, "interpretation", VIPS_INTERPRETATION_sRGB, NULL));
+    return made &&
+           vips_pass_on(image, &two, vips()->copy(*image, &two, "interpretation", VIPS_INTERPRETATION_sRGB, NULL));
 }
 
 static bool transform(VipsImage *image, int colours, VipsImage **out)
@@ -50,9 +42,9 @@ static bool transform(VipsImage *image, int colours, VipsImage **out)
     if (vips()->extract_band(image, out, 0, "n", colours, NULL)) return false;
     bool good = channels_of(image) == colours || make_colours(out);
     if (good)
-        good = pass_on(out, &made,
-                       vips()->icc_transform(*out, &made, "srgb", "embedded", TRUE, "depth", 16, "intent",
-                                             VIPS_INTENT_RELATIVE, NULL));
+        good = vips_pass_on(out, &made,
+                            vips()->icc_transform(*out, &made, "srgb", "embedded", TRUE, "depth", 16, "intent",
+                                                  VIPS_INTENT_RELATIVE, NULL));
     if (!good) vips()->g_object_unref(*out);
     return good;
 }
@@ -63,9 +55,9 @@ static bool add_alpha(VipsImage *image, int band, VipsImage **out)
     VipsImage *alpha = NULL, *made = NULL;
     double most = vips()->image_get_format(image) == VIPS_FORMAT_UCHAR ? 255 : 65535;
     if (vips()->extract_band(image, &alpha, band, NULL)) return false;
-    bool good = pass_on(&alpha, &made, vips()->linear1(alpha, &made, 65535 / most, 0.0, NULL)) &&
-                pass_on(&alpha, &made, vips()->cast(alpha, &made, VIPS_FORMAT_USHORT, NULL)) &&
-                pass_on(out, &made, vips()->bandjoin2(*out, alpha, &made, NULL));
+    bool good = vips_pass_on(&alpha, &made, vips()->linear1(alpha, &made, 65535 / most, 0.0, NULL)) &&
+                vips_pass_on(&alpha, &made, vips()->cast(alpha, &made, VIPS_FORMAT_USHORT, NULL)) &&
+                vips_pass_on(out, &made, vips()->bandjoin2(*out, alpha, &made, NULL));
     vips()->g_object_unref(alpha);
     return good;
 }
