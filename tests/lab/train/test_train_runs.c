@@ -89,6 +89,7 @@ static const struct run {
     {"merlin-any/12-256", 0xedec69fba1d8cd03},
     {"merlin-any/13-128", 0x4e31cd54213af74d},
     {"merlin-any/14-256", 0x56e84429cefd1f20},
+    {"merlin-any/15-256", 0xbf9cf71be92e9e4e},
 };
 enum { RUNS = sizeof runs / sizeof *runs };
 
