@@ -199,6 +199,23 @@ static void what_cannot_be_is_refused_and_leaves_nothing(void **state)
     free(own);
 }
 
+/* At sizes that are computed and at those that are enlarged. */
+static void occlusion_beside_the_object_is_1(void **state)
+{
+    (void)state;
+    merlin_maps m;
+    merlin_image out;
+    plane_maps(&m);
+    for (int side = 512; side <= 2048; side *= 2) {
+        const size_t row = (size_t)side * (size_t)(side / 2);
+        assert_int_equal(merlin_maps_occlusion(&m, side, &out), MERLIN_OK);
+        assert_true(out.data[0] == 1 && out.data[row] == 1);
+        assert_in_range(1000 * out.data[row + (size_t)side / 2], 900, 1000); /* a plane's */
+        merlin_image_free(&out);
+    }
+    merlin_maps_free(&m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -208,6 +225,7 @@ int main(void)
         cmocka_unit_test(textures_go_on_beside_the_object),
         cmocka_unit_test(materialx_brings_the_files_that_it_names),
         cmocka_unit_test(what_cannot_be_is_refused_and_leaves_nothing),
+        cmocka_unit_test(occlusion_beside_the_object_is_1),
     };
     return cmocka_run_group_tests(tests, scratch_open, scratch_close);
 }
